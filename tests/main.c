@@ -1,11 +1,9 @@
 /* Runs the CUnit suites: all of them, or those whose names contain the first argument. Exit code 1: a test failed. */
+#include "tests/suites.h"
+
 #include <CUnit/Basic.h>
 #include <stdio.h>
 #include <string.h>
-
-#define SUITE(area) int suite_##area(void);
-#include "tests/suites.h"
-#undef SUITE
 
 static const struct {
     const char *name;
@@ -13,7 +11,6 @@ static const struct {
 } suites[] = {
 #define SUITE(area) {#area, suite_##area},
 #include "tests/suites.h"
-#undef SUITE
 };
 
 int main(int argc, char **argv) {

@@ -1,3 +1,9 @@
 /* Every suite of tests/run, one a line: SUITE(area) calls suite_area() of tests/test_area.c, which adds its CUnit suite
- * to the registry and returns 0. Included several times, each time with another SUITE. */
+ * to the registry and returns 0. Without a SUITE of the includer's own, this declares them. */
+#ifndef SUITE
+#define SUITE(area) int suite_##area(void);
+#endif
+
 SUITE(vocabulary)
+
+#undef SUITE
