@@ -5,5 +5,7 @@
 #endif
 
 SUITE(vocabulary)
+SUITE(cursor)
+SUITE(decode)
 
 #undef SUITE
