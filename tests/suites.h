@@ -5,6 +5,9 @@
 #endif
 
 SUITE(vocabulary)
+SUITE(fractal)
+SUITE(greedy)
+SUITE(grid_error)
 SUITE(cursor)
 SUITE(decode)
 
