@@ -12,9 +12,12 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 enum { RUNS = 5 };
+
+#define BORDER_TOLERANCE_M 10
 
 struct crop {
     const char *name, *file; /* file: below the folder of test data; NULL: the fractal */
@@ -132,10 +135,37 @@ static bool compare_methods(const struct bench_task *task) {
         bool bound_holds = task->vertex_target != 0 || m.judged.max_m <= task->tolerance_m;
         if (!bound_holds || !m.judged.covers) {
             printf("broken: %s %s\n", bench_methods[i].name,
-                   bound_holds ? "does not cover the crop" : "passes its bound");
+                   bound_holds ? "does not cover the crop" : "exceeds its bound");
             fine = false;
         }
     }
+    return fine;
+}
+
+/* What shared borders cost: the crop as one tile, then as four. A tile's triangles are those of its area and those of
+ * its border; from the two counts follows what a quarter without a border's cost would take. */
+static bool price_borders(const struct bench_method *method, const struct bench_task *whole) {
+    struct measurement one, part;
+    if (!measure(method, whole, &one)) return false;
+    double four = 0;
+    int columns = whole->columns / 2 + 1, rows = whole->rows / 2 + 1;
+    float *heights_m = malloc((size_t)columns * (size_t)rows * sizeof *heights_m);
+    if (heights_m == NULL) return false;
+    struct bench_task task = {.heights_m = heights_m, .columns = columns, .rows = rows};
+    task.tolerance_m = whole->tolerance_m;
+    bool fine = true;
+    for (int quarter = 0; quarter < 4 && fine; quarter++) {
+        int x = quarter % 2 * (columns - 1), y = quarter / 2 * (rows - 1);
+        for (int row = 0; row < rows; row++)
+            memcpy(heights_m + row * columns, whole->heights_m + (y + row) * whole->columns + x,
+                   (size_t)columns * sizeof *heights_m);
+        fine = measure(method, &task, &part);
+        four += (double)part.triangles;
+    }
+    free(heights_m);
+    if (fine)
+        printf("%8g m  %-24s borders of %d x %d tiles: %.3f x the triangles of free borders (estimate)\n",
+               whole->tolerance_m, method->name, columns, rows, four / (2 * (double)one.triangles - four));
     return fine;
 }
 
@@ -155,6 +185,9 @@ static bool run_crop(const struct crop *crop, const char *folder) {
         task.tolerance_m = tolerances_m[i];
         fine = compare_methods(&task) && fine;
     }
+    task.tolerance_m = BORDER_TOLERANCE_M;
+    for (size_t i = 0; i < bench_method_count && crop->columns == 513 && crop->rows == 513; i++)
+        fine = price_borders(&bench_methods[i], &task) && fine;
     if (crop->vertex_target != 0) {
         task.vertex_target = crop->vertex_target;
         fine = compare_methods(&task) && fine;
