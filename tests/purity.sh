@@ -25,16 +25,16 @@ count=0
 for object in $(find "$build/stream" "$build/lod" "$build/src" -path '*/.libs/*.o' 2>/dev/null | LC_ALL=C sort); do
     file=$(basename "$object" .o | sed 's/^.*_la-//')
     case $file in *_io | main | cmd_*) continue ;; esac
-    calls=$($NM -u "$object" | awk '{print $NF}' | sed 's/@.*//' | grep -Ex "$impure")
+    calls=$($NM -u "$object" | awk '{print $NF}' | sed 's/@.*//' | grep -Ex "$impure" | tr '\n' ' ')
     if [ -n "$calls" ]; then
-        echo "$object: a pure file asks for" $calls
+        echo "$object: a pure file asks for $calls"
         failed=1
     fi
     # .data.rel.ro is written by the loader only: tables of constant pointers in position independent code.
     writable=$($READELF -SW "$object" | sed -n 's/^ *\[ *[0-9]*\] *//p' |
-        awk '$1 ~ /^\.(data|bss|tdata|tbss)/ && $1 !~ /^\.data\.rel\.ro/ && $5 !~ /^0+$/ {print $1}')
+        awk '$1 ~ /^\.(data|bss|tdata|tbss)/ && $1 !~ /^\.data\.rel\.ro/ && $5 !~ /^0+$/ {print $1}' | tr '\n' ' ')
     if [ -n "$writable" ]; then
-        echo "$object: a pure file owns writable globals in" $writable
+        echo "$object: a pure file owns writable globals in $writable"
         failed=1
     fi
     count=$((count + 1))
