@@ -1,0 +1,93 @@
+#include "src/raster_arguments.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool argument_number(const char *text, double *number) {
+    char *end;
+    *number = strtod(text, &end);
+    return end != text && *end == '\0' && isfinite(*number);
+}
+
+bool argument_integer(const char *text, long low, long high, int *number) {
+    char *end;
+    errno = 0;
+    long value = strtol(text, &end, 10);
+    if (end == text || *end != '\0' || errno != 0 || value < low || value > high) return false;
+    *number = (int)value;
+    return true;
+}
+
+/* Is it the option of this name, written with one dash or two? */
+static bool is_option(const char *argument, const char *name) {
+    if (argument[0] != '-') return false;
+    argument += argument[1] == '-' ? 2 : 1;
+    return strcmp(argument, name) == 0;
+}
+
+static enum argument_result wrong(struct scree_error *error, const char *option, const char *wanted) {
+    scree_fail(error, SCREE_E_ARGUMENT, "%s wants %s", option, wanted);
+    return ARGUMENT_WRONG;
+}
+
+static enum argument_result take_extent(int argc, char **argv, int *at, struct raster_options *options,
+                                        struct scree_error *error) {
+    double *extent = options->extent;
+    for (int i = 0; i < 4; i++)
+        if (*at + 1 + i >= argc || !argument_number(argv[*at + 1 + i], &extent[i]))
+            return wrong(error, argv[*at], "four numbers: west south east north");
+    if (!(extent[0] < extent[2]) || !(extent[1] < extent[3]))
+        return wrong(error, argv[*at], "an extent: west below east, south below north");
+    options->has_extent = true;
+    *at += 5;
+    return ARGUMENT_TAKEN;
+}
+
+static enum argument_result take_nodata(const char *option, const char *value, struct raster_options *options,
+                                        struct scree_error *error) {
+    options->has_nodata = true;
+    if (strcmp(value, "nan") == 0 || strcmp(value, "NaN") == 0) {
+        options->nodata = NAN;
+    } else if (!argument_number(value, &options->nodata)) {
+        return wrong(error, option, "a number or nan");
+    }
+    return ARGUMENT_TAKEN;
+}
+
+enum argument_result raster_argument_take(int argc, char **argv, int *at, struct raster_options *options,
+                                          struct scree_error *error) {
+    static const char *const with_value[] = {"r", "b", "s_srs", "a_nodata", "nodata-height", "fill-distance"};
+    const char *option = argv[*at];
+    enum argument_result result = ARGUMENT_TAKEN;
+    size_t which = 0, known = sizeof with_value / sizeof *with_value;
+    if (is_option(option, "te")) return take_extent(argc, argv, at, options, error);
+    if (is_option(option, "any-height")) {
+        options->any_height = true;
+        ++*at;
+        return ARGUMENT_TAKEN;
+    }
+    while (which < known && !is_option(option, with_value[which])) which++;
+    if (which == known) return ARGUMENT_OTHER;
+    if (*at + 1 >= argc) return wrong(error, option, "a value");
+    const char *value = argv[*at + 1];
+    switch (which) {
+    case 0: options->resampling = value; break;
+    case 1:
+        if (!argument_integer(value, 1, INT_MAX, &options->band)) result = wrong(error, option, "a band from 1");
+        break;
+    case 2: options->source_srs = value; break;
+    case 3: result = take_nodata(option, value, options, error); break;
+    case 4:
+        if (!argument_number(value, &options->nodata_height_m)) result = wrong(error, option, "a number of metres");
+        break;
+    default:
+        if (!argument_integer(value, -1, INT_MAX, &options->fill_distance))
+            result = wrong(error, option, "a number of posts, or -1");
+        break;
+    }
+    *at += 2;
+    return result;
+}

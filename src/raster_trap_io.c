@@ -1,0 +1,30 @@
+/* What GDAL and PROJ would print is kept for our own error line instead. */
+#include "src/raster_parts_io.h"
+
+#include <cpl_error.h>
+#include <stdio.h>
+
+static void CPL_STDCALL keep_first_failure(CPLErr severity, CPLErrorNum number, const char *text) {
+    (void)number;
+    struct raster_trap *trap = CPLGetErrorHandlerUserData();
+    if (severity >= CE_Failure && trap->text[0] == '\0') snprintf(trap->text, sizeof trap->text, "%s", text);
+}
+
+void raster_trap_set(struct raster_trap *trap) {
+    trap->text[0] = '\0';
+    CPLPushErrorHandlerEx(keep_first_failure, trap);
+}
+
+void raster_trap_clear(void) {
+    CPLPopErrorHandler();
+}
+
+enum scree_status raster_trap_fail(const struct raster_trap *trap, const char *what, struct scree_error *error) {
+    return scree_fail(error, SCREE_E_IO, "%s: %s", what, trap->text[0] != '\0' ? trap->text : "GDAL cannot read it");
+}
+
+PJ_CONTEXT *raster_proj_new(void) {
+    PJ_CONTEXT *proj = proj_context_create();
+    if (proj != NULL) proj_log_level(proj, PJ_LOG_NONE);
+    return proj;
+}
