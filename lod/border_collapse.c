@@ -1,0 +1,158 @@
+#include "lod/border_collapse.h"
+
+#include <math.h>
+
+enum tile_side border_side(int32_t columns, int32_t rows, const struct sample *at, int32_t *position) {
+    bool on_column = at->x == 0 || at->x == columns, on_row = at->y == 0 || at->y == rows;
+    if (on_column == on_row) return SIDE_COUNT;
+    *position = on_column ? at->y : at->x;
+    if (on_column) return at->x == 0 ? SIDE_WEST : SIDE_EAST;
+    return at->y == 0 ? SIDE_SOUTH : SIDE_NORTH;
+}
+
+/* Errors of the fan from ring[target] (0 or degree) that a collapse along the border leaves; INFINITY when a triangle
+ * would lose its area. */
+static float fan_error_m(const struct simplifier *simplifier, const struct star *star, int32_t target) {
+    float largest_m = 0;
+    int32_t first = target == 0 ? 1 : 0;
+    for (int32_t i = first; i < first + star->degree - 1; i++) {
+        const struct sample *a = &star->at[target], *b = &star->at[i], *c = &star->at[i + 1];
+        if (!simplify_positive(&simplifier->options, a, b, c)) return INFINITY;
+        largest_m = fmaxf(largest_m, samples_triangle_error(&simplifier->samples, a, b, c).max_m);
+    }
+    return largest_m;
+}
+
+/* Triangulations of the polygon ring[0] ... ring[degree] by least error: apex[i][j] is the third corner of the
+ * triangle on the chord from ring[i] to ring[j]. Stars of border vertices are small; larger ones are cut off. */
+#define POLYGON_MAX 40
+struct polygon {
+    float error_m[POLYGON_MAX][POLYGON_MAX];
+    unsigned char apex[POLYGON_MAX][POLYGON_MAX];
+};
+
+static void triangulate(const struct simplifier *simplifier, const struct star *star, struct polygon *polygon) {
+    for (int32_t i = 0; i < star->degree; i++) polygon->error_m[i][i + 1] = 0;
+    for (int32_t width = 2; width <= star->degree; width++)
+        for (int32_t i = 0; i + width <= star->degree; i++) {
+            int32_t j = i + width;
+            polygon->error_m[i][j] = INFINITY;
+            polygon->apex[i][j] = (unsigned char)(i + 1);
+            for (int32_t k = i + 1; k < j; k++) {
+                float both_m = fmaxf(polygon->error_m[i][k], polygon->error_m[k][j]);
+                if (both_m >= polygon->error_m[i][j] || sample_area2(&star->at[i], &star->at[k], &star->at[j]) <= 0)
+                    continue;
+                float here_m =
+                    samples_triangle_error(&simplifier->samples, &star->at[i], &star->at[k], &star->at[j]).max_m;
+                if (fmaxf(both_m, here_m) >= polygon->error_m[i][j]) continue;
+                polygon->error_m[i][j] = fmaxf(both_m, here_m);
+                polygon->apex[i][j] = (unsigned char)k;
+            }
+        }
+}
+
+static void flip(struct simplifier *simplifier, int32_t edge) {
+    const struct simplify_observer *observer = simplifier->options.observer;
+    if (observer != NULL && observer->flip != NULL) observer->flip(observer->context, simplifier->mesh, edge);
+    mesh_flip(simplifier->mesh, edge);
+}
+
+/* The outgoing half-edge of a vertex that ends at `to`. */
+static int32_t edge_to(const struct mesh *mesh, int32_t vertex, int32_t to) {
+    int32_t edge = mesh->vertices[vertex].edge;
+    while (mesh_origin(mesh, mesh_next(edge)) != to) edge = mesh_twin(mesh, mesh_previous(edge));
+    return edge;
+}
+
+/* Flips the vertex's edges to all of ring[i + 1] ... ring[j - 1], so that the polygon's triangles between i and j
+ * stand and the vertex is joined to ring[i] and ring[j] only. */
+static void flip_between(struct simplifier *simplifier, const struct star *star, const struct polygon *polygon,
+                         int32_t i, int32_t j) {
+    if (j - i < 2) return;
+    int32_t k = polygon->apex[i][j];
+    flip_between(simplifier, star, polygon, i, k);
+    flip_between(simplifier, star, polygon, k, j);
+    flip(simplifier, edge_to(simplifier->mesh, star->vertex, star->ring[k]));
+}
+
+static void measure_around(struct simplifier *simplifier, const struct star *star) {
+    struct mesh *mesh = simplifier->mesh;
+    for (int32_t i = 0; i < star->degree; i++) {
+        struct mesh_triangle *triangle = &mesh->triangles[star->edge[i] >> 2];
+        if (triangle->vertex[0] == MESH_NONE) continue;
+        struct triangle_error error =
+            samples_triangle_error(&simplifier->samples, &mesh->vertices[triangle->vertex[0]].at,
+                                   &mesh->vertices[triangle->vertex[1]].at, &mesh->vertices[triangle->vertex[2]].at);
+        triangle->max_m = error.max_m;
+        triangle->sum_squares_m2 = error.sum_squares_m2;
+    }
+}
+
+static void collapse_along(struct simplifier *simplifier, const struct star *star, int32_t target) {
+    const struct simplify_observer *observer = simplifier->options.observer;
+    if (observer != NULL && observer->collapse != NULL)
+        observer->collapse(observer->context, simplifier->mesh, star, target);
+    mesh_collapse(simplifier->mesh, star, target);
+}
+
+/* Takes the vertex out after flips that leave the polygon's best triangulation. */
+static void retriangulate(struct simplifier *simplifier, const struct star *star, const struct polygon *polygon) {
+    struct star narrow;
+    int32_t apex = polygon->apex[0][star->degree];
+    flip_between(simplifier, star, polygon, 0, apex);
+    flip_between(simplifier, star, polygon, apex, star->degree);
+    mesh_star(simplifier->mesh, star->vertex, &narrow);
+    collapse_along(simplifier, &narrow, 0);
+}
+
+/* False when the vertex has to wait. */
+static bool remove_vertex(struct simplifier *simplifier, int32_t vertex, float tolerance_m, int32_t degree_limit) {
+    struct star star;
+    struct polygon polygon;
+    if (!mesh_star(simplifier->mesh, vertex, &star)) return false;
+    float error_m[2];
+    for (int end = 0; end < 2; end++) {
+        int32_t target = end == 0 ? 0 : star.degree;
+        bool crowded = star.degree + mesh_degree(simplifier->mesh, star.ring[target]) - 2 > degree_limit;
+        error_m[end] = crowded ? INFINITY : fan_error_m(simplifier, &star, target);
+    }
+    float least_m = fminf(error_m[0], error_m[1]);
+    if (least_m > tolerance_m && star.degree >= 3 && star.degree < POLYGON_MAX) {
+        triangulate(simplifier, &star, &polygon);
+        if (polygon.error_m[0][star.degree] < least_m) {
+            retriangulate(simplifier, &star, &polygon);
+            goto changed;
+        }
+    }
+    if (least_m == INFINITY) return false;
+    collapse_along(simplifier, &star, error_m[0] <= error_m[1] ? 0 : star.degree);
+changed:
+    measure_around(simplifier, &star);
+    simplifier_star_changed(simplifier, &star);
+    return true;
+}
+
+/* Any vertex on the border; meshes of tiles have one border. */
+static int32_t some_border_vertex(const struct mesh *mesh) {
+    for (int32_t v = 0; v < mesh->vertex_count; v++)
+        if (mesh->vertices[v].edge != MESH_NONE && mesh_twin(mesh, mesh->vertices[v].edge) == MESH_NONE) return v;
+    return MESH_NONE;
+}
+
+void border_collapse(struct simplifier *simplifier, const struct border_line lines[SIDE_COUNT], int32_t columns,
+                     int32_t rows, float tolerance_m, int32_t degree_limit, int32_t *left) {
+    struct mesh *mesh = simplifier->mesh;
+    int32_t corner = some_border_vertex(mesh), position;
+    while (border_side(columns, rows, &mesh->vertices[corner].at, &position) != SIDE_COUNT)
+        corner = mesh_origin(mesh, mesh_next(mesh->vertices[corner].edge));
+    *left = 0;
+    for (int32_t before = corner;;) {
+        int32_t vertex = mesh_origin(mesh, mesh_next(mesh->vertices[before].edge));
+        if (vertex == corner) return;
+        enum tile_side side = border_side(columns, rows, &mesh->vertices[vertex].at, &position);
+        bool keep = side == SIDE_COUNT || border_keeps(&lines[side], position);
+        if (!keep && remove_vertex(simplifier, vertex, tolerance_m, degree_limit)) continue;
+        *left += !keep;
+        before = vertex;
+    }
+}

@@ -1,0 +1,24 @@
+/* Takes out of a mesh the border vertices that its border lines no longer keep. Pure. */
+#ifndef SCREE_LOD_BORDER_COLLAPSE_H
+#define SCREE_LOD_BORDER_COLLAPSE_H
+
+#include "lod/border.h"
+#include "lod/simplify.h"
+
+enum tile_side { SIDE_SOUTH, SIDE_EAST, SIDE_NORTH, SIDE_WEST, SIDE_COUNT };
+
+/* The side of a window of `columns` x `rows` steps on which a point that is no corner lies, and its position from the
+ * side's south or west end; SIDE_COUNT inside and at corners. */
+enum tile_side border_side(int32_t columns, int32_t rows, const struct sample *at, int32_t *position);
+
+/* Removes the border vertices that their lines do not keep. Each goes by a half-edge collapse along the border where
+ * one is within the tolerance, else by the retriangulation of its star with the least error: edges at the vertex are
+ * flipped until a collapse gives it. Border sets are law: where even that passes the tolerance it is done all the
+ * same, and the mesh's errors say so.
+ *
+ * A vertex whose removal would make a star of more than `degree_limit` triangles is left for another pass, when the
+ * interior has become coarser; `left` counts those. */
+void border_collapse(struct simplifier *simplifier, const struct border_line lines[SIDE_COUNT], int32_t columns,
+                     int32_t rows, float tolerance_m, int32_t degree_limit, int32_t *left);
+
+#endif

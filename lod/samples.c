@@ -1,0 +1,147 @@
+#include "lod/samples.h"
+
+#include <math.h>
+
+/* The plane through a triangle, relative to corner a. */
+struct plane {
+    float height_m, gradient_x, gradient_y;
+};
+
+static struct plane plane_through(const struct sample *a, const struct sample *b, const struct sample *c) {
+    double bx = b->x - a->x, by = b->y - a->y, cx = c->x - a->x, cy = c->y - a->y;
+    double bz = (double)b->drawn_m - a->drawn_m, cz = (double)c->drawn_m - a->drawn_m;
+    double scale = 1.0 / (bx * cy - cx * by);
+    return (struct plane){a->drawn_m, (float)((bz * cy - cz * by) * scale), (float)((cz * bx - bz * cx) * scale)};
+}
+
+static inline void swap(const struct sample **p, const struct sample **q) {
+    const struct sample *t = *p;
+    *p = *q;
+    *q = t;
+}
+
+/* Rows of posts between two edges. The ends are computed in doubles: the fractions met are at least 2^-20 apart from
+ * whole numbers or equal to them, far more than the guard. */
+#define ROW_GUARD 1e-7
+
+static inline void scan_rows(const struct samples *samples, const struct plane *plane, const struct sample *origin,
+                             int32_t y_first, int32_t y_last, double left, double left_step, double right,
+                             double right_step, struct triangle_error *error) {
+    float max_m = error->max_m, sum = error->sum_squares_m2;
+    for (int32_t y = y_first; y <= y_last; y++) {
+        int32_t x_first = (int32_t)(left + (1 - ROW_GUARD)), x_last = (int32_t)(right + ROW_GUARD);
+        const float *row = samples->posts + (int64_t)y * samples->stride;
+        float base = plane->height_m + (float)(y - origin->y) * plane->gradient_y;
+        for (int32_t x = x_first; x <= x_last; x++) {
+            float distance = row[x] - (base + (float)(x - origin->x) * plane->gradient_x);
+            float size = fabsf(distance);
+            max_m = size > max_m ? size : max_m;
+            sum += distance * distance;
+        }
+        left += left_step;
+        right += right_step;
+    }
+    error->max_m = max_m;
+    error->sum_squares_m2 = sum;
+}
+
+static struct triangle_error over_posts(const struct samples *samples, const struct plane *plane,
+                                        const struct sample *a, const struct sample *b, const struct sample *c) {
+    const struct sample *origin = a;
+    struct triangle_error error = {0, 0};
+    if (b->y < a->y) swap(&a, &b);
+    if (c->y < a->y) swap(&a, &c);
+    if (c->y < b->y) swap(&b, &c);
+    /* a is the lowest, c the highest; the long edge a-c is on the left when b lies on its right */
+    double long_step = c->y > a->y ? (double)(c->x - a->x) / (c->y - a->y) : 0;
+    bool b_right = sample_area2(a, c, b) < 0;
+    if (b->y > a->y) {
+        double step = (double)(b->x - a->x) / (b->y - a->y);
+        int32_t y_last = b->y - (c->y > b->y); /* b's own row belongs to the upper half when there is one */
+        if (b_right)
+            scan_rows(samples, plane, origin, a->y, y_last, a->x, long_step, a->x, step, &error);
+        else
+            scan_rows(samples, plane, origin, a->y, y_last, a->x, step, a->x, long_step, &error);
+    }
+    if (c->y > b->y) {
+        double step = (double)(c->x - b->x) / (c->y - b->y), at = a->x + (b->y - a->y) * long_step;
+        if (b_right)
+            scan_rows(samples, plane, origin, b->y, c->y, at, long_step, b->x, step, &error);
+        else
+            scan_rows(samples, plane, origin, b->y, c->y, b->x, step, at, long_step, &error);
+    }
+    return error;
+}
+
+/* The part of a triangle's edges between two rows: from *least_x to *largest_x. */
+static void clip_to_band(const struct sample *const corner[3], int32_t y_low, int32_t y_high, double *least_x,
+                         double *largest_x) {
+    *least_x = INFINITY;
+    *largest_x = -INFINITY;
+    for (int i = 0; i < 3; i++) {
+        const struct sample *p = corner[i], *q = corner[(i + 1) % 3];
+        if (p->y > q->y) swap(&p, &q);
+        if (q->y < y_low || p->y > y_high) continue;
+        double slope = q->y > p->y ? (double)(q->x - p->x) / (q->y - p->y) : 0;
+        double first = p->y < y_low ? p->x + slope * (y_low - p->y) : p->x;
+        double last = q->y > y_high ? p->x + slope * (y_high - p->y) : q->x;
+        *least_x = fmin(*least_x, fmin(first, last));
+        *largest_x = fmax(*largest_x, fmax(first, last));
+    }
+}
+
+static inline int32_t clamp_cell(double position, int32_t span, int32_t cells) {
+    int32_t cell = (int32_t)(position / span);
+    return cell < 0 ? 0 : cell >= cells ? cells - 1 : cell;
+}
+
+/* Extremes of one row of cells that lie in the triangle: exact, by whole numbers. */
+static void scan_cells(const struct sample *sample, const struct sample *end, const struct plane *plane,
+                       const struct sample *const corner[3], struct triangle_error *error) {
+    const struct sample *a = corner[0], *b = corner[1], *c = corner[2];
+    for (; sample < end; sample++) {
+        if (sample_area2(a, b, sample) < 0 || sample_area2(b, c, sample) < 0 || sample_area2(c, a, sample) < 0)
+            continue;
+        float distance = sample->drawn_m - (plane->height_m + (float)(sample->x - a->x) * plane->gradient_x +
+                                            (float)(sample->y - a->y) * plane->gradient_y);
+        float size = fabsf(distance);
+        error->max_m = size > error->max_m ? size : error->max_m;
+        error->sum_squares_m2 += distance * distance;
+    }
+}
+
+static struct triangle_error over_extremes(const struct samples *samples, const struct plane *plane,
+                                           const struct sample *a, const struct sample *b, const struct sample *c) {
+    const struct sample *const corner[3] = {a, b, c};
+    struct triangle_error error = {0, 0};
+    int32_t span = samples->cell_span;
+    int32_t y_least = a->y, y_largest = a->y;
+    for (int i = 1; i < 3; i++) {
+        if (corner[i]->y < y_least) y_least = corner[i]->y;
+        if (corner[i]->y > y_largest) y_largest = corner[i]->y;
+    }
+    /* a sample on the border of its cell may be in a triangle that only touches it: one step more on the low sides */
+    int32_t row_last = clamp_cell(y_largest, span, samples->rows);
+    for (int32_t row = clamp_cell(y_least - 1, span, samples->rows); row <= row_last; row++) {
+        double least_x, largest_x;
+        clip_to_band(corner, row * span, (row + 1) * span, &least_x, &largest_x);
+        if (least_x > largest_x) continue;
+        int32_t first = clamp_cell(least_x - 1 - ROW_GUARD, span, samples->columns);
+        int32_t last = clamp_cell(largest_x + ROW_GUARD, span, samples->columns);
+        const struct sample *cells = samples->extremes + 2 * (int64_t)row * samples->columns;
+        scan_cells(cells + 2 * first, cells + 2 * last + 2, plane, corner, &error);
+    }
+    return error;
+}
+
+struct triangle_error samples_triangle_error(const struct samples *samples, const struct sample *a,
+                                             const struct sample *b, const struct sample *c) {
+    struct plane plane = plane_through(a, b, c);
+    struct triangle_error error = {0, 0};
+    if (samples->cell_span > 1)
+        error = over_extremes(samples, &plane, a, b, c);
+    else if (sample_area2(a, b, c) > 1) /* by Pick's theorem, a triangle of area 1/2 holds no post but its corners */
+        error = over_posts(samples, &plane, a, b, c);
+    error.max_m += samples->rounding_steps * (fabsf(plane.gradient_x) + fabsf(plane.gradient_y));
+    return error;
+}

@@ -1,0 +1,330 @@
+#include "lod/simplify.h"
+
+#include <math.h>
+#include <string.h>
+
+#define MAX_JOINED_DEGREE 48    /* no collapse makes a larger star: fans are bad for error and for graphics alike */
+#define CANDIDATES        3     /* neighbours, the best of the quadric, whose exact errors are looked at */
+#define LEAST_CLASS       0.25f /* growths below this share of the squared tolerance are all alike */
+#define POSITION_TOP      32767
+
+enum vertex_state {
+    STATE_FIXED,   /* dead, on the border, locked, or of too large a star */
+    STATE_QUEUED,  /* in the queue with a target that still holds */
+    STATE_CHANGED, /* in the queue; its star has changed since it was looked at */
+    STATE_REFUSED  /* not in the queue: no collapse within the tolerance */
+};
+
+/* A collapse that has been looked at. */
+struct candidate {
+    int32_t target;  /* index in the ring; MESH_NONE: none is admissible */
+    float growth;    /* of the sum of squared errors, m2 */
+    float refused_m; /* where none is: below this tolerance none can be */
+    struct triangle_error errors[MESH_MAX_DEGREE];
+};
+
+int32_t position_code(int64_t position, int64_t span) {
+    return (int32_t)((2 * position * POSITION_TOP + span) / (2 * span));
+}
+
+static struct sample code_of(const struct code_frame *frame, const struct sample *at) {
+    return (struct sample){position_code((int64_t)at->x + frame->x, frame->span),
+                           position_code((int64_t)at->y + frame->y, frame->span), 0};
+}
+
+bool simplify_positive(const struct simplify_options *options, const struct sample *a, const struct sample *b,
+                       const struct sample *c) {
+    if (sample_area2(a, b, c) <= 0) return false;
+    if (options->codes.span <= POSITION_TOP) return true;
+    struct sample codes[3] = {code_of(&options->codes, a), code_of(&options->codes, b), code_of(&options->codes, c)};
+    return sample_area2(&codes[0], &codes[1], &codes[2]) > 0;
+}
+
+/* The triangles of a closed star that survive a collapse into ring[target] are those of index target + 1 up to
+ * target + degree - 2, around the ring. */
+static inline int32_t around(int32_t index, int32_t degree) {
+    return index >= degree ? index - degree : index;
+}
+
+static bool stays_positive(const struct simplify_options *options, const struct star *star, int32_t target) {
+    for (int32_t j = 1; j < star->degree - 1; j++) {
+        int32_t i = around(target + j, star->degree);
+        if (!simplify_positive(options, &star->at[target], &star->at[i], &star->at[i + 1])) return false;
+    }
+    return true;
+}
+
+/* Slopes of the star's triangles and twice their areas: the planes whose quadric proposes. */
+struct star_planes {
+    double slope_x[MESH_MAX_DEGREE], slope_y[MESH_MAX_DEGREE], area2[MESH_MAX_DEGREE];
+};
+
+static void planes_of_star(const struct star *star, const struct sample *at, struct star_planes *planes) {
+    for (int32_t i = 0; i < star->degree; i++) {
+        const struct sample *a = &star->at[i], *b = &star->at[i + 1];
+        double ax = a->x - at->x, ay = a->y - at->y, az = (double)a->drawn_m - at->drawn_m;
+        double bx = b->x - at->x, by = b->y - at->y, bz = (double)b->drawn_m - at->drawn_m;
+        double area2 = ax * by - bx * ay, scale = 1 / area2;
+        planes->slope_x[i] = (az * by - bz * ay) * scale;
+        planes->slope_y[i] = (bz * ax - az * bx) * scale;
+        planes->area2[i] = area2;
+    }
+}
+
+/* The quadric of the star's planes (vertical distances, weighted by area) at a neighbour. */
+static double quadric_cost(const struct star *star, const struct sample *at, const struct star_planes *planes,
+                           int32_t neighbour) {
+    double x = star->at[neighbour].x - at->x, y = star->at[neighbour].y - at->y;
+    double z = (double)star->at[neighbour].drawn_m - at->drawn_m, cost = 0;
+    for (int32_t i = 0; i < star->degree; i++) {
+        double distance = z - planes->slope_x[i] * x - planes->slope_y[i] * y;
+        cost += distance * distance * planes->area2[i];
+    }
+    return cost;
+}
+
+/* The best admissible neighbours by quadric, in order; returns how many. */
+static int propose(const struct simplifier *simplifier, const struct star *star, const struct sample *at,
+                   int32_t proposed[CANDIDATES]) {
+    struct star_planes planes;
+    double costs[CANDIDATES];
+    int count = 0;
+    planes_of_star(star, at, &planes);
+    for (int32_t k = 0; k < star->degree; k++) {
+        double cost = quadric_cost(star, at, &planes, k);
+        if (count == CANDIDATES && cost >= costs[count - 1]) continue;
+        if (!stays_positive(&simplifier->options, star, k)) continue;
+        int place = count < CANDIDATES ? count++ : CANDIDATES - 1;
+        for (; place > 0 && costs[place - 1] > cost; place--) {
+            costs[place] = costs[place - 1];
+            proposed[place] = proposed[place - 1];
+        }
+        costs[place] = cost;
+        proposed[place] = k;
+    }
+    return count;
+}
+
+/* Looks at one target; improves `best` when it is admissible and cheaper. */
+static void measure_target(const struct simplifier *simplifier, const struct star *star, int32_t target,
+                           float present_sum, struct candidate *best) {
+    struct triangle_error errors[MESH_MAX_DEGREE];
+    float sum = -present_sum;
+    for (int32_t j = 1; j < star->degree - 1; j++) {
+        int32_t i = around(target + j, star->degree);
+        errors[j] = samples_triangle_error(&simplifier->samples, &star->at[target], &star->at[i], &star->at[i + 1]);
+        sum += errors[j].sum_squares_m2;
+        if (errors[j].max_m > simplifier->tolerance_m) {
+            if (errors[j].max_m < best->refused_m) best->refused_m = errors[j].max_m;
+            return;
+        }
+        if (sum >= best->growth) return;
+    }
+    best->target = target;
+    best->growth = sum;
+    memcpy(best->errors, errors, (size_t)star->degree * sizeof *errors);
+}
+
+static float present_sum(const struct mesh *mesh, const struct star *star) {
+    float sum = 0;
+    for (int32_t i = 0; i < star->degree; i++) sum += mesh->triangles[star->edge[i] >> 2].sum_squares_m2;
+    return sum;
+}
+
+static void find_candidate(const struct simplifier *simplifier, const struct star *star, struct candidate *best) {
+    int32_t proposed[CANDIDATES];
+    int count = propose(simplifier, star, &simplifier->mesh->vertices[star->vertex].at, proposed);
+    float sum = present_sum(simplifier->mesh, star);
+    best->target = MESH_NONE;
+    best->growth = best->refused_m = INFINITY;
+    for (int i = 0; i < count; i++) measure_target(simplifier, star, proposed[i], sum, best);
+}
+
+/* The target found earlier, measured again for the errors of its triangles. */
+static void recall_candidate(const struct simplifier *simplifier, const struct star *star, struct candidate *best) {
+    int32_t k = 0;
+    while (star->ring[k] != simplifier->target[star->vertex]) k++;
+    best->target = MESH_NONE;
+    best->growth = best->refused_m = INFINITY;
+    measure_target(simplifier, star, k, 0, best);
+}
+
+int32_t mesh_degree(const struct mesh *mesh, int32_t vertex) {
+    int32_t first = mesh->vertices[vertex].edge, edge = first, degree = 0;
+    do {
+        degree++;
+        edge = mesh_twin(mesh, mesh_previous(edge));
+    } while (edge != first && edge != MESH_NONE);
+    return degree;
+}
+
+static void vertex_changed(struct simplifier *simplifier, int32_t vertex) {
+    switch (simplifier->state[vertex]) {
+    case STATE_QUEUED: simplifier->state[vertex] = STATE_CHANGED; break;
+    case STATE_REFUSED:
+        simplifier->state[vertex] = STATE_CHANGED;
+        queue_push(&simplifier->queue, vertex, simplifier->queue.current);
+        break;
+    default: break;
+    }
+}
+
+void simplifier_star_changed(struct simplifier *simplifier, const struct star *star) {
+    for (int32_t i = 0; i <= star->degree; i++)
+        if (i < star->degree || star->open) vertex_changed(simplifier, star->ring[i]);
+}
+
+static void carry_out(struct simplifier *simplifier, const struct star *star, const struct candidate *candidate) {
+    const struct simplify_observer *observer = simplifier->options.observer;
+    if (observer != NULL && observer->collapse != NULL)
+        observer->collapse(observer->context, simplifier->mesh, star, candidate->target);
+    mesh_collapse(simplifier->mesh, star, candidate->target);
+    for (int32_t j = 1; j < star->degree - 1; j++) {
+        struct mesh_triangle *triangle =
+            &simplifier->mesh->triangles[star->edge[around(candidate->target + j, star->degree)] >> 2];
+        triangle->max_m = candidate->errors[j].max_m;
+        triangle->sum_squares_m2 = candidate->errors[j].sum_squares_m2;
+    }
+    simplifier->state[star->vertex] = STATE_FIXED;
+    simplifier_star_changed(simplifier, star);
+}
+
+static void visit(struct simplifier *simplifier, int32_t vertex) {
+    struct star star;
+    struct candidate candidate;
+    if (!mesh_star(simplifier->mesh, vertex, &star)) {
+        simplifier->state[vertex] = STATE_FIXED;
+        return;
+    }
+    if (simplifier->state[vertex] == STATE_CHANGED) {
+        find_candidate(simplifier, &star, &candidate);
+        int32_t class = candidate.target == MESH_NONE ? 0 : queue_class(&simplifier->queue, candidate.growth);
+        if (class > simplifier->queue.current) {
+            simplifier->state[vertex] = STATE_QUEUED;
+            simplifier->target[vertex] = star.ring[candidate.target];
+            queue_push(&simplifier->queue, vertex, class);
+            return;
+        }
+    } else {
+        recall_candidate(simplifier, &star, &candidate);
+    }
+    if (candidate.target != MESH_NONE &&
+        star.degree + mesh_degree(simplifier->mesh, star.ring[candidate.target]) - 4 <= MAX_JOINED_DEGREE) {
+        carry_out(simplifier, &star, &candidate);
+        return;
+    }
+    simplifier->state[vertex] = STATE_REFUSED;
+    simplifier->refused_m[vertex] = candidate.refused_m;
+}
+
+void simplify_interior(struct simplifier *simplifier, float tolerance_m) {
+    struct queue *queue = &simplifier->queue;
+    simplifier->tolerance_m = tolerance_m;
+    queue_reset(queue, LEAST_CLASS * tolerance_m * tolerance_m);
+    for (int32_t v = 0; v < simplifier->mesh->vertex_count; v++) {
+        unsigned char *state = &simplifier->state[v];
+        if (*state == STATE_REFUSED && simplifier->refused_m[v] > tolerance_m) continue;
+        if (*state == STATE_FIXED) continue;
+        *state = STATE_CHANGED;
+        queue_push(queue, v, 0);
+    }
+    for (int32_t v = queue_pop(queue); v != QUEUE_NONE; v = queue_pop(queue)) visit(simplifier, v);
+}
+
+static bool positive_in_codes(const struct simplifier *simplifier, const struct mesh_triangle *triangle) {
+    const struct mesh_vertex *vertices = simplifier->mesh->vertices;
+    return simplify_positive(&simplifier->options, &vertices[triangle->vertex[0]].at, &vertices[triangle->vertex[1]].at,
+                             &vertices[triangle->vertex[2]].at);
+}
+
+/* Collapses one corner of the triangle that may go, where that leaves its star positive. */
+static bool collapse_corner(struct simplifier *simplifier, const struct mesh_triangle *triangle) {
+    struct star star;
+    struct candidate candidate;
+    for (int i = 0; i < 3; i++) {
+        int32_t vertex = triangle->vertex[i];
+        if (simplifier->state[vertex] == STATE_FIXED || !mesh_star(simplifier->mesh, vertex, &star)) continue;
+        find_candidate(simplifier, &star, &candidate);
+        if (candidate.target == MESH_NONE) continue;
+        carry_out(simplifier, &star, &candidate);
+        return true;
+    }
+    return false;
+}
+
+int32_t simplify_for_codes(struct simplifier *simplifier) {
+    int32_t left = 0;
+    bool progress = simplifier->options.codes.span > POSITION_TOP;
+    float tolerance_m = simplifier->tolerance_m;
+    simplifier->tolerance_m = INFINITY;
+    queue_reset(&simplifier->queue, 1);
+    while (progress) {
+        progress = false;
+        left = 0;
+        for (int32_t t = 0; t < simplifier->mesh->triangle_count; t++) {
+            const struct mesh_triangle *triangle = &simplifier->mesh->triangles[t];
+            if (triangle->vertex[0] == MESH_NONE || positive_in_codes(simplifier, triangle)) continue;
+            if (collapse_corner(simplifier, triangle))
+                progress = true;
+            else
+                left++;
+        }
+    }
+    simplifier->tolerance_m = tolerance_m;
+    return left;
+}
+
+enum scree_status simplifier_start(struct scree_memory *memory, struct mesh *mesh, const struct samples *samples,
+                                   const struct simplify_options *options, struct simplifier *simplifier,
+                                   struct scree_error *error) {
+    size_t count = (size_t)mesh->vertex_count;
+    memset(simplifier, 0, sizeof *simplifier);
+    simplifier->memory = memory;
+    simplifier->mesh = mesh;
+    simplifier->samples = *samples;
+    simplifier->options = *options;
+    simplifier->state = scree_allocate(memory, count, sizeof *simplifier->state, "vertex states", error);
+    simplifier->target = scree_allocate(memory, count, sizeof *simplifier->target, "vertex targets", error);
+    simplifier->refused_m = scree_allocate(memory, count, sizeof *simplifier->refused_m, "vertex bounds", error);
+    if (simplifier->state == NULL || simplifier->target == NULL || simplifier->refused_m == NULL ||
+        queue_allocate(memory, mesh->vertex_count, &simplifier->queue, error) != SCREE_OK) {
+        simplifier_release(simplifier);
+        return SCREE_E_MEMORY;
+    }
+    for (int32_t v = 0; v < mesh->vertex_count; v++) {
+        const struct mesh_vertex *vertex = &mesh->vertices[v];
+        if (vertex->edge == MESH_NONE || mesh_twin(mesh, vertex->edge) == MESH_NONE) continue;
+        int64_t step = options->locked_step;
+        if (step > 0 && vertex->at.x % step == 0 && vertex->at.y % step == 0) continue;
+        simplifier->state[v] = STATE_REFUSED; /* with a bound of 0: looked at with the first tolerance */
+    }
+    return SCREE_OK;
+}
+
+void simplifier_release(struct simplifier *simplifier) {
+    queue_release(simplifier->memory, &simplifier->queue);
+    scree_release(simplifier->memory, simplifier->refused_m);
+    scree_release(simplifier->memory, simplifier->target);
+    scree_release(simplifier->memory, simplifier->state);
+    memset(simplifier, 0, sizeof *simplifier);
+}
+
+float mesh_max_error_m(const struct mesh *mesh) {
+    float max_m = 0;
+    for (int32_t t = 0; t < mesh->triangle_count; t++)
+        if (mesh->triangles[t].vertex[0] != MESH_NONE && mesh->triangles[t].max_m > max_m)
+            max_m = mesh->triangles[t].max_m;
+    return max_m;
+}
+
+void mesh_measure(struct mesh *mesh, const struct samples *samples) {
+    for (int32_t t = 0; t < mesh->triangle_count; t++) {
+        struct mesh_triangle *triangle = &mesh->triangles[t];
+        if (triangle->vertex[0] == MESH_NONE) continue;
+        struct triangle_error error =
+            samples_triangle_error(samples, &mesh->vertices[triangle->vertex[0]].at,
+                                   &mesh->vertices[triangle->vertex[1]].at, &mesh->vertices[triangle->vertex[2]].at);
+        triangle->max_m = error.max_m;
+        triangle->sum_squares_m2 = error.sum_squares_m2;
+    }
+}

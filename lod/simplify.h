@@ -1,0 +1,85 @@
+/* The collapse: a mesh is taken to a coarser tolerance by half-edge collapses, each of them within the bound. Pure.
+ *
+ * Order and admission (design of Scree; quadrics: Garland and Heckbert 1997):
+ *   - the quadric of a vertex's triangles proposes which neighbour it may go to;
+ *   - the exact errors of the triangles that a collapse would make decide: it is admitted when none of them passes the
+ *     tolerance, and the cheapest growth of the sum of squared errors goes first;
+ *   - every remaining triangle keeps a strictly positive area in the lattice plane.
+ * A vertex that the bound refuses is looked at again when its star changes or the tolerance grows.
+ *
+ * Border vertices leave only when the caller's border sets say so (lod/border.h), by lod/border_collapse.h. */
+#ifndef SCREE_LOD_SIMPLIFY_H
+#define SCREE_LOD_SIMPLIFY_H
+
+#include "lod/mesh.h"
+#include "lod/queue.h"
+#include "lod/samples.h"
+
+/* Someone who watches the simplification, such as a recorder of vertex splits. All members may be NULL. */
+struct simplify_observer {
+    void *context;
+    /* before the star's vertex goes into ring[target] */
+    void (*collapse)(void *context, const struct mesh *mesh, const struct star *star, int32_t target);
+    /* before an edge between two triangles is turned */
+    void (*flip)(void *context, const struct mesh *mesh, int32_t edge);
+};
+
+/* How positions will be written: as codes 0..32767 over `span` lattice steps, counted from (-x, -y). Where the span is
+ * larger than that, triangles have to stay positive in codes as well. */
+struct code_frame {
+    int64_t span; /* 0: codes are not looked at */
+    int32_t x, y; /* the mesh's origin in the frame */
+};
+
+struct simplify_options {
+    int64_t locked_step; /* vertices whose x and y are multiples of it never go; 0: none are locked */
+    struct code_frame codes;
+    const struct simplify_observer *observer; /* NULL: nobody watches */
+};
+
+struct simplifier {
+    struct scree_memory *memory;
+    struct mesh *mesh;
+    struct samples samples;
+    struct simplify_options options;
+    struct queue queue;
+    float tolerance_m;
+    unsigned char *state; /* one a vertex, see simplify.c */
+    int32_t *target;      /* the neighbour that a vertex would go to */
+    float *refused_m;     /* the tolerance below which it cannot go */
+};
+
+/* `mesh`, connected and with the errors of its triangles set, is borrowed until simplifier_release. */
+enum scree_status simplifier_start(struct scree_memory *memory, struct mesh *mesh, const struct samples *samples,
+                                   const struct simplify_options *options, struct simplifier *simplifier,
+                                   struct scree_error *error);
+void simplifier_release(struct simplifier *simplifier);
+
+/* Collapses interior vertices as far as the tolerance goes. Tolerances must not fall from call to call. */
+void simplify_interior(struct simplifier *simplifier, float tolerance_m);
+
+/* Collapses vertices of triangles that have no positive area in position codes, whatever the error. Returns how many
+ * such triangles are left (their corners are all on the border, or hold each other). */
+int32_t simplify_for_codes(struct simplifier *simplifier);
+
+/* Tells that the stars of these vertices have changed. */
+void simplifier_star_changed(struct simplifier *simplifier, const struct star *star);
+
+/* The largest error of the living triangles. */
+float mesh_max_error_m(const struct mesh *mesh);
+
+/* Measures every living triangle anew. */
+void mesh_measure(struct mesh *mesh, const struct samples *samples);
+
+/* Triangles around a vertex. */
+int32_t mesh_degree(const struct mesh *mesh, int32_t vertex);
+
+/* A position as a code, rounded to nearest, halves up. */
+int32_t position_code(int64_t position, int64_t span);
+
+/* Whether (a, b, c) is counter-clockwise with a positive area, also in position codes where they are coarser than the
+ * lattice. */
+bool simplify_positive(const struct simplify_options *options, const struct sample *a, const struct sample *b,
+                       const struct sample *c);
+
+#endif

@@ -1,0 +1,359 @@
+#include "lod/tile.h"
+
+#include "lod/extremes.h"
+#include "lod/merge.h"
+#include "lod/quadric.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Rounding of a drawn height (24 bits) and of the sums that compare it with a plane, as a share of the tile's relief.
+ */
+#define FLOAT_SLACK (1.0 / (1 << 21))
+
+#define PASS_DEGREE 40    /* largest star that a pass over the borders makes */
+#define PASS_SHARE  0.25f /* of the tolerance, for the interior between two passes */
+
+/* ---- heights ---- */
+
+static int32_t height_units(const struct tile *tile, double height_m) {
+    return (int32_t)lround(height_m / tile->geometry.height_unit_m);
+}
+
+static double drop_m(const struct tile_geometry *geometry, double x, double y) {
+    double dx = x - 0.5 * geometry->columns, dy = y - 0.5 * geometry->rows;
+    return geometry->drop_x_m * dx * dx + geometry->drop_y_m * dy * dy;
+}
+
+static float drawn_m(const struct tile *tile, double height_m, int32_t x, int32_t y) {
+    return (float)(height_m - tile->reference_m - drop_m(&tile->geometry, x, y));
+}
+
+/* Sets the drawn heights of the mesh from its heights, around a reference in the middle of them. */
+static void draw_vertices(struct tile *tile) {
+    struct mesh *mesh = &tile->mesh;
+    int32_t lowest = mesh->heights[0], highest = lowest;
+    for (int32_t v = 1; v < mesh->vertex_count; v++) {
+        if (mesh->heights[v] < lowest) lowest = mesh->heights[v];
+        if (mesh->heights[v] > highest) highest = mesh->heights[v];
+    }
+    double unit_m = tile->geometry.height_unit_m;
+    tile->reference_m = 0.5 * ((double)lowest + highest) * unit_m;
+    for (int32_t v = 0; v < mesh->vertex_count; v++) {
+        struct sample *at = &mesh->vertices[v].at;
+        at->drawn_m = drawn_m(tile, mesh->heights[v] * unit_m, at->x, at->y);
+    }
+    double relief_m = 0.5 * ((double)highest - lowest) * unit_m + drop_m(&tile->geometry, 0, 0);
+    tile->slack_m = (float)(relief_m * FLOAT_SLACK);
+}
+
+/* ---- a tile of posts ---- */
+
+/* The full grid of a tile, with alternating diagonals; `step` lattice steps from post to post. */
+static enum scree_status make_grid(struct tile *tile, int32_t step, struct scree_error *error) {
+    int32_t columns = tile->geometry.columns / step, rows = tile->geometry.rows / step, across = columns + 1;
+    enum scree_status status = mesh_allocate(tile->memory, across * (rows + 1), 2 * columns * rows, &tile->mesh, error);
+    if (status != SCREE_OK) return status;
+    struct mesh *mesh = &tile->mesh;
+    for (int32_t y = 0; y <= rows; y++)
+        for (int32_t x = 0; x <= columns; x++)
+            mesh->vertices[mesh->vertex_count++].at = (struct sample){x * step, y * step, 0};
+    for (int32_t y = 0; y < rows; y++)
+        for (int32_t x = 0; x < columns; x++) {
+            int32_t a = y * across + x, b = a + 1, c = a + across, d = c + 1;
+            bool rising = ((x + y) & 1) == 0;
+            struct mesh_triangle *pair = &mesh->triangles[mesh->triangle_count];
+            memcpy(pair[0].vertex, (int32_t[3]){a, b, rising ? d : c}, sizeof pair[0].vertex);
+            memcpy(pair[1].vertex, (int32_t[3]){d, c, rising ? a : b}, sizeof pair[1].vertex);
+            mesh->triangle_count += 2;
+        }
+    return mesh_connect(tile->memory, mesh, error);
+}
+
+static void start_line(struct tile *tile, enum tile_side side, int32_t step, const float *heights_m, int32_t stride) {
+    struct border_line *line = &tile->lines[side];
+    int32_t length = side == SIDE_SOUTH || side == SIDE_NORTH ? tile->geometry.columns : tile->geometry.rows;
+    line->curvature_m = tile->geometry.side_drop_m[side];
+    line->vertex_count = line->sample_count = length / step + 1;
+    for (int32_t i = 0; i < line->vertex_count; i++) {
+        float height_m = heights_m[(int64_t)i * stride];
+        line->samples[i] = (struct border_sample){i * step, height_m};
+        line->vertices[i] =
+            (struct border_sample){i * step, (float)(height_units(tile, height_m) * tile->geometry.height_unit_m)};
+    }
+}
+
+static enum scree_status start_rest(struct tile *tile, struct scree_error *error) {
+    const struct tile_geometry *geometry = &tile->geometry;
+    struct coarse_tile *rest = scree_allocate(tile->memory, 1, sizeof *rest, "a tile's remains", error);
+    if (rest == NULL) return SCREE_E_MEMORY;
+    tile->rest = rest;
+    rest->columns = geometry->columns;
+    rest->rows = geometry->rows;
+    rest->cell_span = 2 * geometry->cell_span;
+    rest->cell_columns = extremes_cells(geometry->columns, rest->cell_span);
+    rest->cell_rows = extremes_cells(geometry->rows, rest->cell_span);
+    rest->extremes = scree_allocate(tile->memory, 2 * (size_t)rest->cell_columns * (size_t)rest->cell_rows,
+                                    sizeof *rest->extremes, "a tile's extremes", error);
+    if (rest->extremes == NULL) return SCREE_E_MEMORY;
+    return slope_grid_allocate(tile->memory, (tile->slopes.columns - 1) / 2 + 1, (tile->slopes.rows - 1) / 2 + 1,
+                               rest->cell_span, &rest->slopes, error);
+}
+
+static enum scree_status start_simplifier(struct tile *tile, struct scree_error *error) {
+    struct simplify_options options = {.locked_step = tile->geometry.locked_step};
+    return simplifier_start(tile->memory, &tile->mesh, &tile->samples, &options, &tile->simplifier, error);
+}
+
+static enum scree_status use_posts(struct tile *tile, const struct tile_posts *posts, struct scree_error *error) {
+    const struct tile_geometry *geometry = &tile->geometry;
+    int32_t across = geometry->columns + 1;
+    tile->posts = scree_allocate(tile->memory, (size_t)across * (size_t)(geometry->rows + 1), sizeof *tile->posts,
+                                 "a tile's posts", error);
+    if (tile->posts == NULL) return SCREE_E_MEMORY;
+    for (int32_t y = 0; y <= geometry->rows; y++)
+        for (int32_t x = 0; x <= geometry->columns; x++) {
+            double height_m = posts->heights_m[(int64_t)y * posts->stride + x];
+            tile->mesh.heights[y * across + x] = height_units(tile, height_m);
+        }
+    draw_vertices(tile);
+    for (int32_t y = 0; y <= geometry->rows; y++)
+        for (int32_t x = 0; x <= geometry->columns; x++)
+            tile->posts[y * across + x] = drawn_m(tile, posts->heights_m[(int64_t)y * posts->stride + x], x, y);
+    tile->samples = (struct samples){
+        .columns = geometry->columns, .rows = geometry->rows, .cell_span = 1, .posts = tile->posts, .stride = across};
+    return SCREE_OK;
+}
+
+enum scree_status tile_from_posts(struct scree_memory *memory, const struct tile_geometry *geometry,
+                                  const struct tile_posts *posts, struct tile *tile, struct scree_error *error) {
+    enum scree_status status;
+    const float *heights_m = posts->heights_m;
+    const int64_t last_row = (int64_t)geometry->rows * posts->stride;
+    memset(tile, 0, sizeof *tile);
+    tile->memory = memory;
+    tile->geometry = *geometry;
+    if ((status = make_grid(tile, 1, error)) != SCREE_OK) goto failed;
+    if ((status = use_posts(tile, posts, error)) != SCREE_OK) goto failed;
+    start_line(tile, SIDE_SOUTH, 1, heights_m, 1);
+    start_line(tile, SIDE_EAST, 1, heights_m + geometry->columns, posts->stride);
+    start_line(tile, SIDE_NORTH, 1, heights_m + last_row, 1);
+    start_line(tile, SIDE_WEST, 1, heights_m, posts->stride);
+    status = slope_grid_allocate(memory, geometry->columns + 1, geometry->rows + 1, 1, &tile->slopes, error);
+    if (status != SCREE_OK) goto failed;
+    slope_grid_from_posts(&tile->slopes, heights_m, posts->stride, posts->east_m, geometry->north_m);
+    if ((status = start_rest(tile, error)) != SCREE_OK) goto failed;
+    extremes_from_posts(heights_m, posts->stride, geometry->columns, geometry->rows, tile->rest->extremes);
+    slope_grid_reduce(&tile->slopes, &tile->rest->slopes);
+    if ((status = start_simplifier(tile, error)) != SCREE_OK) goto failed;
+    return SCREE_OK;
+failed:
+    tile_release(tile);
+    return status;
+}
+
+/* ---- a tile of extremes ---- */
+
+static enum scree_status use_extremes(struct tile *tile, struct scree_error *error) {
+    const struct tile_geometry *geometry = &tile->geometry;
+    int32_t columns = extremes_cells(geometry->columns, geometry->cell_span);
+    int32_t rows = extremes_cells(geometry->rows, geometry->cell_span);
+    tile->extremes =
+        scree_allocate(tile->memory, 2 * (size_t)columns * (size_t)rows, sizeof *tile->extremes, "extremes", error);
+    if (tile->extremes == NULL) return SCREE_E_MEMORY;
+    tile->samples = (struct samples){
+        .columns = columns, .rows = rows, .cell_span = geometry->cell_span, .extremes = tile->extremes};
+    return slope_grid_allocate(tile->memory, geometry->columns / geometry->cell_span + 1,
+                               geometry->rows / geometry->cell_span + 1, geometry->cell_span, &tile->slopes, error);
+}
+
+/* The extremes hold heights until the parent's have been taken from them; then they become drawn heights. */
+static enum scree_status finish_extremes(struct tile *tile, struct scree_error *error) {
+    enum scree_status status = start_rest(tile, error);
+    if (status != SCREE_OK) return status;
+    extremes_reduce(tile->extremes, tile->samples.columns, tile->samples.rows, tile->rest->extremes);
+    slope_grid_reduce(&tile->slopes, &tile->rest->slopes);
+    int64_t count = 2 * (int64_t)tile->samples.columns * tile->samples.rows;
+    for (int64_t i = 0; i < count; i++) {
+        struct sample *sample = &tile->extremes[i];
+        sample->drawn_m = drawn_m(tile, sample->drawn_m, sample->x, sample->y);
+    }
+    return SCREE_OK;
+}
+
+static enum scree_status border_is_closed(const struct tile *tile, struct scree_error *error) {
+    for (int32_t v = 0; v < tile->mesh.vertex_count; v++) {
+        const struct mesh_vertex *vertex = &tile->mesh.vertices[v];
+        const struct sample *at = &vertex->at;
+        bool on_border = at->x == 0 || at->y == 0 || at->x == tile->geometry.columns || at->y == tile->geometry.rows;
+        if (!on_border && mesh_twin(&tile->mesh, vertex->edge) == MESH_NONE)
+            return scree_fail(error, SCREE_E_CORRUPT, "tiles disagree about the vertices of a common border");
+    }
+    return SCREE_OK;
+}
+
+static enum scree_status join_lines(struct tile *tile, const struct coarse_tile *const children[4], int32_t child_span,
+                                    struct scree_error *error) {
+    static const struct {
+        enum tile_side side;
+        int first, second;           /* children along the line */
+        int first_else, second_else; /* where the window ends before them */
+    } joins[SIDE_COUNT] = {
+        {SIDE_SOUTH, 0, 1, 0, 1}, {SIDE_EAST, 1, 3, 0, 2}, {SIDE_NORTH, 2, 3, 0, 1}, {SIDE_WEST, 0, 2, 0, 2}};
+    for (int i = 0; i < SIDE_COUNT; i++) {
+        bool outer = children[joins[i].first] != NULL;
+        const struct coarse_tile *first = children[outer ? joins[i].first : joins[i].first_else];
+        const struct coarse_tile *second = children[outer ? joins[i].second : joins[i].second_else];
+        enum tile_side side = joins[i].side;
+        if (!border_join(&first->lines[side], second != NULL ? &second->lines[side] : NULL, child_span,
+                         tile->geometry.cell_span, &tile->lines[side]))
+            return scree_fail(error, SCREE_E_LIMIT,
+                              "the tolerance is too small for so coarse a zoom: a tile's border keeps more than %d "
+                              "vertices; raise --error or --error-at, or start at a higher --min-zoom",
+                              BORDER_MAX_VERTICES);
+        tile->lines[side].curvature_m = tile->geometry.side_drop_m[side];
+    }
+    return SCREE_OK;
+}
+
+enum scree_status tile_from_children(struct scree_memory *memory, const struct tile_geometry *geometry,
+                                     const struct coarse_tile *const children[4], struct tile *tile,
+                                     struct scree_error *error) {
+    enum scree_status status;
+    const struct scree_mesh *meshes[4];
+    int32_t child_span = children[0]->columns > children[0]->rows ? children[0]->columns : children[0]->rows;
+    if (children[1] != NULL) child_span = children[0]->columns;
+    if (children[2] != NULL) child_span = children[0]->rows;
+    memset(tile, 0, sizeof *tile);
+    tile->memory = memory;
+    tile->geometry = *geometry;
+    for (int i = 0; i < 4; i++) meshes[i] = children[i] != NULL ? &children[i]->mesh : NULL;
+    if ((status = mesh_merge(memory, meshes, child_span, &tile->mesh, error)) != SCREE_OK) goto failed;
+    if ((status = border_is_closed(tile, error)) != SCREE_OK) goto failed;
+    if ((status = use_extremes(tile, error)) != SCREE_OK) goto failed;
+    for (int i = 0; i < 4; i++) {
+        if (children[i] == NULL) continue;
+        int32_t x = i % 2 * child_span, y = i / 2 * child_span, span = geometry->cell_span;
+        extremes_place(children[i]->extremes, children[i]->cell_columns, children[i]->cell_rows, x / span, y / span, x,
+                       y, tile->extremes, tile->samples.columns);
+        slope_grid_place(&children[i]->slopes, x / span, y / span, &tile->slopes);
+    }
+    if ((status = join_lines(tile, children, child_span, error)) != SCREE_OK) goto failed;
+    draw_vertices(tile);
+    if ((status = finish_extremes(tile, error)) != SCREE_OK) goto failed;
+    mesh_measure(&tile->mesh, &tile->samples);
+    if ((status = start_simplifier(tile, error)) != SCREE_OK) goto failed;
+    return SCREE_OK;
+failed:
+    tile_release(tile);
+    return status;
+}
+
+/* ---- a tile without data ---- */
+
+enum scree_status tile_from_level(struct scree_memory *memory, const struct tile_geometry *geometry, int32_t step,
+                                  double height_m, struct tile *tile, struct scree_error *error) {
+    enum scree_status status;
+    float height = (float)height_m;
+    memset(tile, 0, sizeof *tile);
+    tile->memory = memory;
+    tile->geometry = *geometry;
+    if ((status = make_grid(tile, step, error)) != SCREE_OK) goto failed;
+    for (int32_t v = 0; v < tile->mesh.vertex_count; v++) tile->mesh.heights[v] = height_units(tile, height_m);
+    for (int side = 0; side < SIDE_COUNT; side++) start_line(tile, (enum tile_side)side, step, &height, 0);
+    draw_vertices(tile);
+    if ((status = use_extremes(tile, error)) != SCREE_OK) goto failed;
+    for (int32_t i = 0; i < 2 * tile->samples.columns * tile->samples.rows; i++) {
+        int32_t cell = i / 2, span = geometry->cell_span; /* any post will do: the middle of the cell */
+        tile->extremes[i] = (struct sample){cell % tile->samples.columns * span + span / 2,
+                                            cell / tile->samples.columns * span + span / 2, height};
+    }
+    if ((status = finish_extremes(tile, error)) != SCREE_OK) goto failed;
+    mesh_measure(&tile->mesh, &tile->samples);
+    if ((status = start_simplifier(tile, error)) != SCREE_OK) goto failed;
+    return SCREE_OK;
+failed:
+    tile_release(tile);
+    return status;
+}
+
+/* ---- any tile ---- */
+
+void tile_set_codes(struct tile *tile, struct code_frame codes) {
+    tile->simplifier.options.codes = codes;
+    /* a code is off by half a step at the most */
+    tile->simplifier.samples.rounding_steps = (float)(0.5 * (double)codes.span / 32767);
+}
+
+static void reduce_lines(struct tile *tile, double tolerance_m) {
+    const struct code_frame *codes = &tile->simplifier.options.codes;
+    for (int side = 0; side < SIDE_COUNT; side++) {
+        bool horizontal = side == SIDE_SOUTH || side == SIDE_NORTH;
+        border_reduce(&tile->lines[side], BORDER_SHARE * tolerance_m, tile->geometry.locked_step);
+        border_separate_codes(&tile->lines[side], codes->span, horizontal ? codes->x : codes->y);
+    }
+}
+
+/* Long level borders lose all their vertices at once; fans would become too large. So the border goes in passes, and
+ * between them the interior is thinned at a part of the tolerance that leaves room for the border's own. */
+static enum scree_status collapse_borders(struct tile *tile, float bound_m, struct scree_error *error) {
+    int32_t left, before = INT32_MAX;
+    for (int32_t limit = PASS_DEGREE;; before = left) {
+        border_collapse(&tile->simplifier, tile->lines, tile->geometry.columns, tile->geometry.rows, bound_m, limit,
+                        &left);
+        if (left == 0) return SCREE_OK;
+        if (left == before && limit == MESH_MAX_DEGREE) break;
+        if (left == before) limit = MESH_MAX_DEGREE;
+        simplify_interior(&tile->simplifier, PASS_SHARE * bound_m);
+    }
+    return scree_fail(error, SCREE_E_LIMIT, "%d vertices of a tile's border cannot be taken out", (int)left);
+}
+
+enum scree_status tile_advance(struct tile *tile, double tolerance_m, struct scree_error *error) {
+    float bound_m = (float)tolerance_m - tile->slack_m;
+    if (bound_m < 0) bound_m = 0;
+    reduce_lines(tile, tolerance_m);
+    enum scree_status status = collapse_borders(tile, bound_m, error);
+    if (status != SCREE_OK) return status;
+    simplify_interior(&tile->simplifier, bound_m);
+    if (simplify_for_codes(&tile->simplifier) == 0) return SCREE_OK;
+    return scree_fail(error, SCREE_E_LIMIT, "a tile's triangles are too small for the position codes of a coarse zoom");
+}
+
+double tile_max_error_m(const struct tile *tile) {
+    return mesh_max_error_m(&tile->mesh);
+}
+
+double tile_mmqe_m2(const struct tile *tile) {
+    return quadric_mmqe_m2(&tile->mesh, tile->geometry.east_m, tile->geometry.north_m);
+}
+
+enum scree_status tile_hand_up_new(struct tile *tile, struct coarse_tile **coarse, struct scree_error *error) {
+    enum scree_status status = mesh_export_new(tile->memory, &tile->mesh, &tile->rest->mesh, error);
+    if (status != SCREE_OK) return status;
+    memcpy(tile->rest->lines, tile->lines, sizeof tile->lines);
+    tile->rest->max_error_m = tile_max_error_m(tile);
+    *coarse = tile->rest;
+    tile->rest = NULL;
+    return SCREE_OK;
+}
+
+void tile_release(struct tile *tile) {
+    if (tile == NULL || tile->memory == NULL) return;
+    if (tile->simplifier.memory != NULL) simplifier_release(&tile->simplifier);
+    coarse_tile_free(tile->memory, tile->rest);
+    slope_grid_release(tile->memory, &tile->slopes);
+    scree_release(tile->memory, tile->extremes);
+    scree_release(tile->memory, tile->posts);
+    mesh_release(tile->memory, &tile->mesh);
+    memset(tile, 0, sizeof *tile);
+}
+
+void coarse_tile_free(struct scree_memory *memory, struct coarse_tile *coarse) {
+    if (coarse == NULL) return;
+    scree_release(memory, coarse->mesh.corners);
+    scree_release(memory, coarse->mesh.vertices);
+    slope_grid_release(memory, &coarse->slopes);
+    scree_release(memory, coarse->extremes);
+    scree_release(memory, coarse);
+}
