@@ -3,11 +3,11 @@
 
 #include <math.h>
 
-#define ROOT_DEG 180.0                   /* side of a geodetic root tile */
-#define WGS84_A_M 6378137.0              /* EPSG:7030 */
-#define WGS84_E2 6.69437999014131705e-3  /* f (2 - f), f = 1 / 298.257223563 */
+#define ROOT_DEG           180.0                  /* side of a geodetic root tile */
+#define WGS84_A_M          6378137.0              /* EPSG:7030 */
+#define WGS84_E2           6.69437999014131705e-3 /* f (2 - f), f = 1 / 298.257223563 */
 #define RADIANS_PER_DEGREE 0.017453292519943295
-#define SPACING_SLACK 1.1 /* posts may lie this much farther apart than the source's pixels */
+#define SPACING_SLACK      1.1 /* posts may lie this much farther apart than the source's pixels */
 
 static int64_t tile_span(int finest_zoom, int zoom) {
     return (int64_t)TILE_CELLS << (finest_zoom - zoom);

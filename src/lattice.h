@@ -11,7 +11,7 @@
 #include <stdint.h>
 
 #define TILE_CELLS 256
-#define MAX_ZOOM 22 /* a tile at zoom 0 spans 2^30 lattice steps then: positions in a tile fit int32_t */
+#define MAX_ZOOM   22 /* a tile at zoom 0 spans 2^30 lattice steps then: positions in a tile fit int32_t */
 
 enum profile {
     PROFILE_GEODETIC, /* EPSG:4326, two root tiles of 180 degrees: Cesium's default */
@@ -27,15 +27,15 @@ struct tile_id {
 struct lattice {
     enum profile profile;
     int finest_zoom;
-    int64_t columns, rows;        /* posts: the whole globe (the last column is the first one again), or the raster's */
-    double west, south;           /* coordinate of post (0, 0): degrees, or units of the raster's CRS */
-    double spacing_x, spacing_y;  /* from post to post, positive: degrees, or units of the raster's CRS */
-    double metres_x, metres_y;    /* local profile: metres of one step; geodetic: 0, see lattice_steps_m */
+    int64_t columns, rows;       /* posts: the whole globe (the last column is the first one again), or the raster's */
+    double west, south;          /* coordinate of post (0, 0): degrees, or units of the raster's CRS */
+    double spacing_x, spacing_y; /* from post to post, positive: degrees, or units of the raster's CRS */
+    double metres_x, metres_y;   /* local profile: metres of one step; geodetic: 0, see lattice_steps_m */
 };
 
 /* A rectangle of posts, borders included. */
 struct lattice_window {
-    int64_t x, y;        /* south-western post */
+    int64_t x, y;          /* south-western post */
     int32_t columns, rows; /* steps, not posts: columns + 1 posts a row */
 };
 
@@ -48,7 +48,8 @@ enum scree_status lattice_local(int64_t columns, int64_t rows, double west, doub
                                 double spacing_y, double metres_per_unit, struct lattice *lattice,
                                 struct scree_error *error);
 
-/* The first zoom whose posts are no farther apart than 1.1 x `spacing_deg` (the source's resolution), at most MAX_ZOOM. */
+/* The first zoom whose posts are no farther apart than 1.1 x `spacing_deg` (the source's resolution), at most MAX_ZOOM.
+ */
 int lattice_zoom_for_spacing(double spacing_deg);
 
 /* Lattice steps along the side of a whole tile of this zoom. */

@@ -31,12 +31,10 @@ static char *missing_grid_of(PJ_CONTEXT *proj, const PJ *operation) {
 }
 
 enum scree_status raster_operation_find(PJ_CONTEXT *proj, const PJ *source, const PJ *target, const double area_deg[4],
-                                        bool allow_ballpark, char **pipeline, char **description,
-                                        char **missing_grid) {
+                                        bool allow_ballpark, char **pipeline, char **description, char **missing_grid) {
     PJ_OPERATION_FACTORY_CONTEXT *factory = proj_create_operation_factory_context(proj, NULL);
     if (factory == NULL) return SCREE_E_MEMORY;
-    proj_operation_factory_context_set_spatial_criterion(proj, factory,
-                                                         PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION);
+    proj_operation_factory_context_set_spatial_criterion(proj, factory, PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION);
     proj_operation_factory_context_set_grid_availability_use(proj, factory, PROJ_GRID_AVAILABILITY_IGNORED);
     proj_operation_factory_context_set_allow_ballpark_transformations(proj, factory, allow_ballpark);
     if (area_deg != NULL)
@@ -50,8 +48,7 @@ enum scree_status raster_operation_find(PJ_CONTEXT *proj, const PJ *source, cons
         if (operation == NULL) continue;
         if (proj_coordoperation_is_instantiable(proj, operation)) {
             PJ *in_map_order = proj_normalize_for_visualization(proj, operation);
-            const char *text =
-                in_map_order == NULL ? NULL : proj_as_proj_string(proj, in_map_order, PJ_PROJ_5, NULL);
+            const char *text = in_map_order == NULL ? NULL : proj_as_proj_string(proj, in_map_order, PJ_PROJ_5, NULL);
             if (text != NULL) *pipeline = strdup(text);
             if (text != NULL && description != NULL) *description = strdup(proj_get_name(operation));
             proj_destroy(in_map_order);

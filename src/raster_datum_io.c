@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* The vertical part of a compound CRS; NULL when it has none. */
 static PJ *vertical_of(PJ_CONTEXT *proj, const PJ *crs) {
@@ -101,12 +102,18 @@ static enum scree_status find_pipeline(PJ_CONTEXT *proj, const char *name, const
     return status;
 }
 
-enum scree_status raster_shift_find(PJ_CONTEXT *proj, const char *name, const char *crs_wkt,
-                                    struct raster_group *group, char **line, struct scree_error *error) {
+/* GeoTIFF files without a vertical datum may name one "unknown". */
+static bool is_named(const PJ *vertical) {
+    const char *name = vertical == NULL ? NULL : proj_get_name(vertical);
+    return name != NULL && name[0] != '\0' && strcasecmp(name, "unknown") != 0 && strcasecmp(name, "unnamed") != 0;
+}
+
+enum scree_status raster_shift_find(PJ_CONTEXT *proj, const char *name, const char *crs_wkt, struct raster_group *group,
+                                    char **line, struct scree_error *error) {
     enum scree_status status = SCREE_OK;
     PJ *crs = raster_crs_new(proj, crs_wkt);
     PJ *vertical = vertical_of(proj, crs);
-    if (vertical != NULL) {
+    if (is_named(vertical)) {
         double axis = 1;
         if (!axis_metres(proj, vertical, 0, &axis)) axis = 1;
         group->shift_scale = 1 / axis;

@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define GRID_SLACK 0.01   /* pixels: grids that differ by no more are one */
-#define TURN_SLACK 0.25   /* pixels: how badly a whole turn may be met */
-#define CIRCLE_GAP_DEG 3.0 /* data with no larger gap between longitudes go around the globe */
+#define GRID_SLACK     0.01 /* pixels: grids that differ by no more are one */
+#define TURN_SLACK     0.25 /* pixels: how badly a whole turn may be met */
+#define CIRCLE_GAP_DEG 3.0  /* data with no larger gap between longitudes go around the globe */
 enum { GRID_SAMPLES = 33, EDGE_SAMPLES = 257, ALL_SAMPLES = GRID_SAMPLES * GRID_SAMPLES + 4 * EDGE_SAMPLES };
 
 void raster_group_free(struct raster_group *group) {

@@ -9,9 +9,9 @@
 #include <string.h>
 #include <strings.h>
 
-#define CACHE_BYTES (64 << 20) /* of GDAL's blocks, all threads together, unless the user configured it */
+#define CACHE_BYTES           (64 << 20) /* of GDAL's blocks, all threads together, unless the user configured it */
 #define DEFAULT_FILL_DISTANCE 100
-#define MAX_FILL_DISTANCE 2048
+#define MAX_FILL_DISTANCE     2048
 enum { POLE_SAMPLES = 360, SHIFT_SAMPLES = 33, EXTENT_SAMPLES = 65 };
 
 static const struct {
@@ -19,11 +19,20 @@ static const struct {
     GDALResampleAlg method;
     double overshoot; /* beyond the range of the source, as a share of that range */
 } resamplings[] = {
-    {"near", GRA_NearestNeighbour, 0}, {"nearest", GRA_NearestNeighbour, 0}, {"bilinear", GRA_Bilinear, 0},
-    {"cubic", GRA_Cubic, 0.35},        {"cubicspline", GRA_CubicSpline, 0},  {"lanczos", GRA_Lanczos, 0.75},
-    {"average", GRA_Average, 0},       {"rms", GRA_RMS, 0},                  {"mode", GRA_Mode, 0},
-    {"max", GRA_Max, 0},               {"min", GRA_Min, 0},                  {"med", GRA_Med, 0},
-    {"q1", GRA_Q1, 0},                 {"q3", GRA_Q3, 0},
+    {"near", GRA_NearestNeighbour, 0},
+    {"nearest", GRA_NearestNeighbour, 0},
+    {"bilinear", GRA_Bilinear, 0},
+    {"cubic", GRA_Cubic, 0.35},
+    {"cubicspline", GRA_CubicSpline, 0},
+    {"lanczos", GRA_Lanczos, 0.75},
+    {"average", GRA_Average, 0},
+    {"rms", GRA_RMS, 0},
+    {"mode", GRA_Mode, 0},
+    {"max", GRA_Max, 0},
+    {"min", GRA_Min, 0},
+    {"med", GRA_Med, 0},
+    {"q1", GRA_Q1, 0},
+    {"q3", GRA_Q3, 0},
 };
 
 static char *copied(const char *text) {
@@ -113,8 +122,7 @@ static void sample_shift(struct raster_group *group, PJ *shift) {
     float height_m[SHIFT_SAMPLES];
     double step_deg = (group->east_deg - group->west_deg) / (SHIFT_SAMPLES - 1);
     for (int j = 0; j < SHIFT_SAMPLES; j++) {
-        double latitude_deg =
-            group->south_deg + (group->north_deg - group->south_deg) * j / (SHIFT_SAMPLES - 1);
+        double latitude_deg = group->south_deg + (group->north_deg - group->south_deg) * j / (SHIFT_SAMPLES - 1);
         for (int i = 0; i < SHIFT_SAMPLES; i++) {
             height_m[i] = 0;
             if (!raster_shift_row(shift, group->shift_scale, group->west_deg + i * step_deg, step_deg, latitude_deg, 1,
@@ -195,8 +203,8 @@ static enum scree_status scan(struct raster *raster, PJ_CONTEXT *proj, double ov
         has_heights = true;
         summary->height_min_m = fmin(summary->height_min_m, range.min_m + group->shift_min_m);
         summary->height_max_m = fmax(summary->height_max_m, range.max_m + group->shift_max_m);
-        uncertainty_m = fmax(uncertainty_m, (group->shift_max_m - group->shift_min_m) / 4 +
-                                                (group->shift != NULL ? 0.5 : 0));
+        uncertainty_m =
+            fmax(uncertainty_m, (group->shift_max_m - group->shift_min_m) / 4 + (group->shift != NULL ? 0.5 : 0));
     }
     if (!has_heights)
         return scree_fail(error, SCREE_E_CORRUPT,
@@ -213,8 +221,7 @@ static enum scree_status find_attribution(struct raster *raster, struct scree_er
     raster_trap_set(&trap);
     bool is_done = true;
     for (int i = 0; i < raster->input_count && is_done; i++) {
-        GDALDatasetH dataset =
-            GDALOpenEx(raster->inputs[i].name, GDAL_OF_RASTER | GDAL_OF_READONLY, NULL, NULL, NULL);
+        GDALDatasetH dataset = GDALOpenEx(raster->inputs[i].name, GDAL_OF_RASTER | GDAL_OF_READONLY, NULL, NULL, NULL);
         for (size_t k = 0; k < sizeof keys / sizeof *keys && dataset != NULL && is_done; k++) {
             const char *text = GDALGetMetadataItem(dataset, keys[k], NULL);
             if (text != NULL && text[0] != '\0') is_done = add_line(&raster->summary.attribution, text);
@@ -258,8 +265,7 @@ static double horizontal_metres(PJ_CONTEXT *proj, const char *crs_wkt) {
         crs = horizontal;
     }
     PJ *system = crs == NULL ? NULL : proj_crs_get_coordinate_system(proj, crs);
-    if (system != NULL)
-        proj_cs_get_axis_info(proj, system, 0, NULL, NULL, NULL, &metres, NULL, NULL, NULL);
+    if (system != NULL) proj_cs_get_axis_info(proj, system, 0, NULL, NULL, NULL, &metres, NULL, NULL, NULL);
     PJ_TYPE type = crs == NULL ? PJ_TYPE_UNKNOWN : proj_get_type(crs);
     if (type == PJ_TYPE_GEOGRAPHIC_2D_CRS || type == PJ_TYPE_GEOGRAPHIC_3D_CRS)
         metres *= 6378137.0; /* radians a unit: metres at the equator */
@@ -322,8 +328,7 @@ static enum scree_status open_inputs(struct raster *raster, const struct raster_
     return status;
 }
 
-enum scree_status raster_open(const struct raster_options *options, struct raster **result,
-                              struct scree_error *error) {
+enum scree_status raster_open(const struct raster_options *options, struct raster **result, struct scree_error *error) {
     double overshoot = 0;
     PJ_CONTEXT *proj = raster_proj_new();
     struct raster *raster = calloc(1, sizeof *raster);

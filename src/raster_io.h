@@ -12,29 +12,29 @@ struct raster_options {
     const char *const *inputs; /* GDAL dataset names; later ones lie on top */
     int input_count;
     enum profile profile;
-    int band;                   /* from 1; 0: the first */
-    const char *source_srs;     /* overrides the inputs' CRS (any form that OGR takes, compound too); NULL: theirs */
-    const char *resampling;     /* as gdalwarp -r; NULL: bilinear */
-    bool has_nodata;            /* `nodata` replaces what the inputs declare */
+    int band;               /* from 1; 0: the first */
+    const char *source_srs; /* overrides the inputs' CRS (any form that OGR takes, compound too); NULL: theirs */
+    const char *resampling; /* as gdalwarp -r; NULL: bilinear */
+    bool has_nodata;        /* `nodata` replaces what the inputs declare */
     double nodata;
-    double nodata_height_m;     /* height outside the data's footprint */
-    bool any_height;            /* let heights beyond 20 km pass */
+    double nodata_height_m; /* height outside the data's footprint */
+    bool any_height;        /* let heights beyond 20 km pass */
     bool has_extent;
-    double extent[4];           /* west, south, east, north in degrees or CRS units: crop */
-    int fill_distance;          /* how far voids are interpolated, in posts; 0: the default of 100; negative: never */
+    double extent[4];  /* west, south, east, north in degrees or CRS units: crop */
+    int fill_distance; /* how far voids are interpolated, in posts; 0: the default of 100; negative: never */
 };
 
 struct raster_summary {
-    double bounds[4];        /* of the posts' centres: west, south, east, north in degrees or CRS units; in the geodetic profile
-                                east may exceed 180 where the data cross the antimeridian */
-    int64_t columns, rows;   /* local profile: the raster's pixels */
-    double spacing_x, spacing_y; /* finest resolution of any input, degrees or CRS units */
-    double metres_per_unit;  /* local profile: horizontal unit */
+    double bounds[4];      /* of the posts' centres: west, south, east, north in degrees or CRS units; in the geodetic
+                              profile      east may exceed 180 where the data cross the antimeridian */
+    int64_t columns, rows; /* local profile: the raster's pixels */
+    double spacing_x, spacing_y;       /* finest resolution of any input, degrees or CRS units */
+    double metres_per_unit;            /* local profile: horizontal unit */
     double height_min_m, height_max_m; /* over all valid posts, after scale, offset, units and vertical datum */
-    double relief_margin_m;  /* how much resampling and datum shifts may add to either end */
-    char *crs_wkt;           /* of the lattice: EPSG:4326, or the raster's own; "" when there is none */
-    char *datum;             /* one line on heights: what was assumed or how they are transformed */
-    char *attribution;       /* from the inputs' metadata; "" when they have none */
+    double relief_margin_m;            /* how much resampling and datum shifts may add to either end */
+    char *crs_wkt;                     /* of the lattice: EPSG:4326, or the raster's own; "" when there is none */
+    char *datum;                       /* one line on heights: what was assumed or how they are transformed */
+    char *attribution;                 /* from the inputs' metadata; "" when they have none */
 };
 
 struct raster;
@@ -50,8 +50,8 @@ void raster_free(struct raster *raster);
 /* Binds the raster to the posts of a lattice of its profile. Once, before the first reader. */
 enum scree_status raster_place(struct raster *raster, const struct lattice *lattice, struct scree_error *error);
 
-/* The window of lattice posts that the data may touch (closed; the crop of --te taken into account). In the geodetic profile, data that
- * cross the antimeridian give two windows. Returns how many (1 or 2). Valid after raster_place. */
+/* The window of lattice posts that the data may touch (closed; the crop of --te taken into account). In the geodetic
+ * profile, data that cross the antimeridian give two windows. Returns how many (1 or 2). Valid after raster_place. */
 int raster_windows(const struct raster *raster, struct lattice_window windows[2]);
 
 /* A reader for one thread; several may be open at once. */
@@ -61,9 +61,9 @@ void raster_reader_free(struct raster_reader *reader);
 
 /* Heights in metres of `columns` x `rows` posts from post (x, y), row by row from the south, west to east; `stride`
  * floats from row to row. Any window is allowed: it may leave the lattice (columns wrap around the globe in the
- * geodetic profile, rows and local columns beyond the border repeat the border), because slopes need a margin. Voids within the data's footprint are
- * interpolated, and the result for a post does not depend on the window that it was asked in. Outside of the
- * footprint: nodata_height_m. */
+ * geodetic profile, rows and local columns beyond the border repeat the border), because slopes need a margin. Voids
+ * within the data's footprint are interpolated, and the result for a post does not depend on the window that it was
+ * asked in. Outside of the footprint: nodata_height_m. */
 enum scree_status raster_read(struct raster_reader *reader, int64_t x, int64_t y, int32_t columns, int32_t rows,
                               float *heights_m, int32_t stride, struct scree_error *error);
 

@@ -13,9 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MAX_OPEN_INPUTS 24
-#define WARP_ERROR_PIXELS 0.02 /* how far GDAL's approximation may move a post, in source pixels */
-#define REDUCE_PIXELS 1048576  /* of one read while averaging */
+#define MAX_OPEN_INPUTS   24
+#define WARP_ERROR_PIXELS 0.02    /* how far GDAL's approximation may move a post, in source pixels */
+#define REDUCE_PIXELS     1048576 /* of one read while averaging */
 
 struct field_input {
     struct raster_field *field;
@@ -170,8 +170,8 @@ static GDALDatasetH virtual_new(int columns, int rows) {
 
 static GDALDatasetH virtual_by(VRTImageReadFunc read, void *argument, int columns, int rows) {
     GDALDatasetH dataset = virtual_new(columns, rows);
-    if (dataset != NULL && VRTAddFuncSource((VRTSourcedRasterBandH)GDALGetRasterBand(dataset, 1), read, argument,
-                                            NAN) != CE_None) {
+    if (dataset != NULL &&
+        VRTAddFuncSource((VRTSourcedRasterBandH)GDALGetRasterBand(dataset, 1), read, argument, NAN) != CE_None) {
         GDALClose(dataset);
         return NULL;
     }
@@ -227,8 +227,12 @@ static bool warp_group(struct raster_field *field, struct field_layer *link) {
     }
     if (!raster_transform_make(&link->transform, pixels, columns, rows, link->group->is_geographic, link->to_lonlat))
         return false;
-    double posts[6] = {lattice_x(lattice, (double)layer->x - 0.5), lattice->spacing_x, 0,
-                       lattice_y(lattice, (double)layer->y - 0.5), 0, lattice->spacing_y};
+    double posts[6] = {lattice_x(lattice, (double)layer->x - 0.5),
+                       lattice->spacing_x,
+                       0,
+                       lattice_y(lattice, (double)layer->y - 0.5),
+                       0,
+                       lattice->spacing_y};
     link->transform.west = posts[0];
     link->transform.south = posts[3];
     link->transform.spacing_x = posts[1];

@@ -26,10 +26,10 @@ struct raster_input {
     double geotransform[6]; /* pixel corner to CRS, as GDAL has it */
     char *crs_wkt;          /* "" when there is none */
     bool has_nodata, has_mask;
-    bool is_wide;            /* its values need more than a float */
+    bool is_wide; /* its values need more than a float */
     double nodata;
-    double scale, offset;   /* height in metres, upwards = value * scale + offset */
-    char *unit;             /* a unit of heights that nobody knows, taken as metres; "" */
+    double scale, offset; /* height in metres, upwards = value * scale + offset */
+    char *unit;           /* a unit of heights that nobody knows, taken as metres; "" */
     int group;
     int group_column, group_row; /* where its first pixel lies in the group */
 };
@@ -49,15 +49,15 @@ struct raster_group {
 };
 
 struct raster_layer {
-    int64_t x, y;  /* first post; x unwrapped */
-    int columns, rows;  /* posts; 0: none of the lattice's posts fall on the group */
-    int reduction;      /* the source is averaged over so many pixels before it is warped, so that windows stay small */
+    int64_t x, y;      /* first post; x unwrapped */
+    int columns, rows; /* posts; 0: none of the lattice's posts fall on the group */
+    int reduction;     /* the source is averaged over so many pixels before it is warped, so that windows stay small */
 };
 
 struct raster_placement {
     struct lattice lattice;
-    int64_t x, y;      /* first post of the mosaic, 0 <= x */
-    int columns, rows; /* posts of the mosaic; 0: none */
+    int64_t x, y;                /* first post of the mosaic, 0 <= x */
+    int columns, rows;           /* posts of the mosaic; 0: none */
     struct raster_layer *layers; /* one a group */
 };
 
@@ -100,8 +100,8 @@ struct raster_range {
     bool has_heights;
 };
 /* The range of the heights in a window of pixels, read block by block. */
-enum scree_status raster_input_scan(const struct raster *raster, const struct raster_input *input,
-                                    const int window[4], struct raster_range *range, struct scree_error *error);
+enum scree_status raster_input_scan(const struct raster *raster, const struct raster_input *input, const int window[4],
+                                    struct raster_range *range, struct scree_error *error);
 
 /* raster_units_io.c: the factor from a unit's name to metres; false when nobody knows it. */
 bool raster_unit_metres(PJ_CONTEXT *proj, const char *name, double *metres);
@@ -130,8 +130,8 @@ bool raster_transform_make(struct raster_transform *transform, const double geot
 int raster_transform_points(void *argument, int to_source, int count, double *x, double *y, double *z, int *success);
 
 /* raster_datum_io.c: vertical CRS. */
-enum scree_status raster_shift_find(PJ_CONTEXT *proj, const char *name, const char *crs_wkt,
-                                    struct raster_group *group, char **line, struct scree_error *error);
+enum scree_status raster_shift_find(PJ_CONTEXT *proj, const char *name, const char *crs_wkt, struct raster_group *group,
+                                    char **line, struct scree_error *error);
 /* The factor from the unit of the CRS's heights to metres, negative for depths; false: it names no vertical unit. */
 bool raster_vertical_metres(PJ_CONTEXT *proj, const char *crs_wkt, double *metres);
 /* Adds the shift to `count` heights of one row. */

@@ -5,9 +5,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define SNAP 1e-6 /* steps: a border so near to a post lies on it */
-#define LARGEST_REDUCED 4 /* source pixels a post that are left to the warp to average */
-#define MAX_REDUCTION 1024
+#define SNAP            1e-6 /* steps: a border so near to a post lies on it */
+#define LARGEST_REDUCED 4    /* source pixels a post that are left to the warp to average */
+#define MAX_REDUCTION   1024
 
 struct arc {
     int64_t first, count; /* posts; first is unwrapped */

@@ -138,7 +138,7 @@ static enum scree_status gather(struct raster_reader *reader, int64_t x, int64_t
             if (status == SCREE_OK && block != NULL && is_filled && block->has_voids && !block->is_filled)
                 status = fill(reader, block, error);
             if (status != SCREE_OK) return status;
-            const float *source = block == NULL ? NULL
+            const float *source = block == NULL                   ? NULL
                                   : is_filled && block->has_voids ? block->filled_m
                                                                   : block->heights_m;
             for (int j = 0; j < height; j++, target += stride) {
@@ -165,9 +165,8 @@ static enum scree_status fill(struct raster_reader *reader, struct block *block,
     if (reader->region_m == NULL) reader->region_m = malloc(sizeof(float) * (size_t)side * (size_t)side);
     if (block->filled_m == NULL || reader->region_m == NULL)
         return scree_fail(error, SCREE_E_MEMORY, "no memory to fill voids");
-    enum scree_status status =
-        gather(reader, x * SIDE - SHIFT - margin, y * SIDE - SHIFT - margin, side, side, false, reader->region_m, side,
-               error);
+    enum scree_status status = gather(reader, x * SIDE - SHIFT - margin, y * SIDE - SHIFT - margin, side, side, false,
+                                      reader->region_m, side, error);
     if (status == SCREE_OK)
         status = raster_voids_fill(reader->region_m, side, side, margin, distance, outside_m, error);
     if (status != SCREE_OK) return status;
@@ -197,8 +196,7 @@ enum scree_status raster_read(struct raster_reader *reader, int64_t x, int64_t y
     int first_row = (int)clamped(south - y, 0, rows - 1), first_column = (int)clamped(west - x, 0, columns - 1);
     int inner_rows = (int)(north - south + 1), inner_columns = (int)(east - west + 1);
     float *inner_m = heights_m + (size_t)first_row * (size_t)stride + (size_t)first_column;
-    enum scree_status status =
-        gather(reader, west, south, inner_columns, inner_rows, true, inner_m, stride, error);
+    enum scree_status status = gather(reader, west, south, inner_columns, inner_rows, true, inner_m, stride, error);
     if (status != SCREE_OK) return status;
     /* Beyond the lattice its border is repeated. */
     for (int j = 0; j < inner_rows; j++) {

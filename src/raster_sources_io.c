@@ -10,9 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MAX_HEIGHT_M 20000.0
-#define SCAN_PIXELS 262144      /* of one read: 2 MB as doubles */
-#define MAX_SCAN_PIXELS 2e13    /* the whole globe at 6 m; more is a header that lies */
+#define MAX_HEIGHT_M    20000.0
+#define SCAN_PIXELS     262144 /* of one read: 2 MB as doubles */
+#define MAX_SCAN_PIXELS 2e13   /* the whole globe at 6 m; more is a header that lies */
 
 void raster_input_free(struct raster_input *input) {
     free(input->name);
@@ -207,8 +207,8 @@ static void clean_doubles(const struct raster_input *input, const double *values
 static CPLErr apply_mask(GDALRasterBandH band, int column, int row, int columns, int rows, float *heights_m) {
     unsigned char *mask = VSI_MALLOC3_VERBOSE(1, (size_t)columns, (size_t)rows);
     if (mask == NULL) return CE_Failure;
-    CPLErr failed = GDALRasterIO(GDALGetMaskBand(band), GF_Read, column, row, columns, rows, mask, columns, rows,
-                                 GDT_Byte, 0, 0);
+    CPLErr failed =
+        GDALRasterIO(GDALGetMaskBand(band), GF_Read, column, row, columns, rows, mask, columns, rows, GDT_Byte, 0, 0);
     if (failed == CE_None)
         for (size_t i = 0; i < (size_t)columns * (size_t)rows; i++)
             if (mask[i] == 0) heights_m[i] = NAN;
@@ -243,10 +243,11 @@ static enum scree_status check_height(const struct raster *raster, const struct 
                                       struct scree_error *error) {
     if (raster->options.any_height || fabs(height_m) <= MAX_HEIGHT_M) return SCREE_OK;
     double value = (height_m - input->offset) / input->scale;
-    return scree_fail(error, SCREE_E_CORRUPT,
-                      "%s: a pixel holds %.9g, a height of %.9g m; if that means no data use -a_nodata %.9g, if it is a "
-                      "height use --any-height",
-                      input->name, value, height_m, value);
+    return scree_fail(
+        error, SCREE_E_CORRUPT,
+        "%s: a pixel holds %.9g, a height of %.9g m; if that means no data use -a_nodata %.9g, if it is a "
+        "height use --any-height",
+        input->name, value, height_m, value);
 }
 
 static enum scree_status scan_window(const struct raster *raster, const struct raster_input *input,
@@ -292,8 +293,8 @@ static bool is_empty(GDALRasterBandH band, int column, int row, int columns, int
     return coverage == GDAL_DATA_COVERAGE_STATUS_EMPTY;
 }
 
-enum scree_status raster_input_scan(const struct raster *raster, const struct raster_input *input,
-                                    const int window[4], struct raster_range *range, struct scree_error *error) {
+enum scree_status raster_input_scan(const struct raster *raster, const struct raster_input *input, const int window[4],
+                                    struct raster_range *range, struct scree_error *error) {
     enum scree_status status = SCREE_OK;
     float *heights_m = NULL;
     struct raster_trap trap;

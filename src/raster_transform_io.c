@@ -8,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-#define EDGE_SLACK 0.01    /* pixels: a post so little beyond the raster's edge lies on it */
-#define EDGE_INSET 1e-6    /* pixels: how far inside the edge it is put */
+#define EDGE_SLACK 0.01 /* pixels: a post so little beyond the raster's edge lies on it */
+#define EDGE_INSET 1e-6 /* pixels: how far inside the edge it is put */
 
 bool raster_transform_make(struct raster_transform *transform, const double geotransform[6], int columns, int rows,
                            bool is_geographic, PJ *to_lonlat) {
