@@ -10,5 +10,7 @@ SUITE(greedy)
 SUITE(grid_error)
 SUITE(cursor)
 SUITE(decode)
+SUITE(terrain)
+SUITE(verify)
 
 #undef SUITE
