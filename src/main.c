@@ -14,6 +14,7 @@ static const struct command {
     int (*run)(int argc, char **argv);
     const char *purpose;
 } commands[] = {
+    {"verify", command_verify, "check that a terrain keeps its promises"},
     {NULL, NULL, NULL},
 };
 

@@ -47,7 +47,7 @@ void tile_recipe_relief(struct tile_recipe *recipe, const double bounds[4]) {
     double width = bounds[2] - bounds[0], height = bounds[3] - bounds[1];
     for (uint32_t i = 0; i < recipe->vertex_count; i++) {
         double x = bounds[0] + width * recipe->u[i] / TOP, y = bounds[1] + height * recipe->v[i] / TOP;
-        recipe->h[i] = (uint16_t)floor(16000 + 9000 * sin(0.11 * x) + 6000 * cos(0.07 * y));
+        recipe->h[i] = (uint16_t)lround(16000.3 + 9000 * sin(5 * RADIANS * x) + 6000 * cos(0.07 * y)); /* once around */
     }
 }
 
