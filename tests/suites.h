@@ -11,6 +11,8 @@ SUITE(grid_error)
 SUITE(cursor)
 SUITE(decode)
 SUITE(terrain)
+SUITE(store)
+SUITE(layer)
 SUITE(verify)
 
 #undef SUITE
