@@ -15,6 +15,8 @@ static const struct command {
     const char *purpose;
 } commands[] = {
     {"verify", command_verify, "check that a terrain keeps its promises"},
+    {"info", command_info, "what is in a terrain or a tile"},
+    {"extract", command_extract, "a terrain or tile as a mesh file at a scale you choose"},
     {NULL, NULL, NULL},
 };
 

@@ -14,5 +14,12 @@ SUITE(terrain)
 SUITE(store)
 SUITE(layer)
 SUITE(verify)
+SUITE(lattice)
+SUITE(raster)
+SUITE(raster_bad)
+SUITE(raster_datum)
+SUITE(raster_globe)
+SUITE(raster_mosaic)
+SUITE(extract)
 
 #undef SUITE
