@@ -4,6 +4,7 @@
 #include "config.h"
 #include "src/json_text.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -241,6 +242,29 @@ static void put_scree(struct json_text *json, const struct layer *layer) {
     json_close(json, '}');
 }
 
+/* ---- the whole ---- */
+
+static uint64_t mix(uint64_t hash, const void *bytes, size_t size_bytes) { /* FNV-1a */
+    for (const unsigned char *b = bytes; size_bytes-- > 0; b++) hash = (hash ^ *b) * 0x100000001b3u;
+    return hash;
+}
+
+/* Clients append the version to the tiles' addresses: other tiles get another one, so that no cache mixes two builds.
+ */
+static void put_version(struct json_text *json, const struct layer *layer) {
+    uint64_t hash = mix(0xcbf29ce484222325u, layer->bounds, sizeof layer->bounds);
+    for (int zoom = 0; zoom <= layer->max_zoom; zoom++) {
+        const struct layer_zoom *sums = &layer->zooms[zoom];
+        const double figures[] = {sums->tolerance_m, sums->height_step_m, sums->max_error_m, sums->svo_m};
+        const uint64_t counts[] = {sums->vertices, sums->triangles, sums->bytes, sums->tile_count};
+        hash = mix(mix(hash, figures, sizeof figures), counts, sizeof counts);
+    }
+    char version[32];
+    snprintf(version, sizeof version, "1.0.0-%08" PRIx32, (uint32_t)(hash ^ hash >> 32));
+    json_key(json, "version");
+    json_string(json, version);
+}
+
 static void put_layer(struct json_text *json, const struct layer *layer, struct cover *cover) {
     json_open(json, '{');
     json_key(json, "tilejson");
@@ -249,8 +273,7 @@ static void put_layer(struct json_text *json, const struct layer *layer, struct 
     json_string(json, "terrain");
     json_key(json, "format");
     json_string(json, "quantized-mesh-1.0");
-    json_key(json, "version");
-    json_string(json, "1.0.0");
+    put_version(json, layer);
     json_key(json, "scheme");
     json_string(json, "tms");
     put_projection(json, layer);

@@ -1,4 +1,7 @@
-/* layer.json, explicit and complete: what clients need, and a "scree" member with what verify and info need. Pure. */
+/* layer.json, explicit and complete: what clients need, and a "scree" member with what verify and info need. Pure.
+ *
+ * Its version ("1.0.0-" and eight hexadecimal digits) depends on the tiles' figures alone: the same build has the same
+ * one, a build with other tiles another one, and caches do not mix them. */
 #ifndef SCREE_LAYER_JSON_H
 #define SCREE_LAYER_JSON_H
 

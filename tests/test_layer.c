@@ -145,7 +145,7 @@ static void what_clients_need_is_there(void) {
     static const char *const wanted[] = {
         "\"tilejson\": \"2.1.0\"",
         "\"format\": \"quantized-mesh-1.0\"",
-        "\"version\": \"1.0.0\"",
+        "\"version\": \"1.0.0-",
         "\"scheme\": \"tms\"",
         "\"projection\": \"EPSG:4326\"",
         "\"tiles\": [\"{z}/{x}/{y}.terrain?v={version}\"]",
@@ -170,6 +170,26 @@ static void what_clients_need_is_there(void) {
     world->layer.is_gzipped = true;
     check_says(&world->layer, "\"extensions\": []");
     check_says(&world->layer, "\"gzip\": true");
+    free(world);
+}
+
+/* The eight digits of the version, as a number. */
+static unsigned long version_of(const struct layer *layer) {
+    char *text = text_of(layer);
+    unsigned long version = strtoul(strstr(text, "\"1.0.0-") + 7, NULL, 16);
+    free(text);
+    return version;
+}
+
+static void versions_follow_the_tiles(void) {
+    struct world *world = world_new(), *same = world_new();
+    unsigned long version = version_of(&world->layer);
+    CU_ASSERT_EQUAL(version, version_of(&same->layer));
+    same->layer.attribution = "somebody";
+    CU_ASSERT_EQUAL(version, version_of(&same->layer));
+    same->zooms[2].bytes++;
+    CU_ASSERT_NOT_EQUAL(version, version_of(&same->layer));
+    free(same);
     free(world);
 }
 
@@ -250,6 +270,7 @@ int suite_layer(void) {
         {"numbers are short and exact", numbers_are_short_and_exact},
         {"numbers ignore the locale", numbers_ignore_the_locale},
         {"what clients need is there", what_clients_need_is_there},
+        {"versions follow the tiles", versions_follow_the_tiles},
         {"local layers name their CRS", local_layers_name_their_crs},
         {"available is exact", available_is_exact},
     };

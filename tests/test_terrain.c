@@ -6,6 +6,7 @@
 #include "src/quantized_mesh.h"
 #include "src/quantized_mesh_decode.h"
 #include "src/quantized_mesh_order.h"
+#include "src/verify_tile.h"
 
 #include <CUnit/CUnit.h>
 #include <math.h>
@@ -103,12 +104,19 @@ struct encoded {
     struct decoded_tile tile;
 };
 
-/* Encodes and decodes; fails the test when that does not work. */
+/* Encodes and decodes; fails the test when that does not work or when verify finds a fault. */
 static struct encoded encode(const struct fixture *f) {
     struct encoded e = {0};
     struct scree_error error = {0};
     CU_ASSERT_EQUAL_FATAL(quantized_mesh_encode_new(&e.memory, &f->tile, &e.bytes, &e.size_bytes, &error), SCREE_OK);
     CU_ASSERT_EQUAL_FATAL(decoded_tile_read(&e.memory, e.bytes, e.size_bytes, &e.tile, &error), SCREE_OK);
+    struct verify_report *report = calloc(1, sizeof *report);
+    struct tile_frame frame = tile_frame_of(&f->lattice, f->tile.id, true);
+    CU_ASSERT_EQUAL(verify_tile(&e.memory, &e.tile, &frame, report, &error), SCREE_OK);
+    CU_ASSERT_EQUAL(report_broken_promises(report), 0);
+    CU_ASSERT_EQUAL(report->promises[PROMISE_COVER].checked, 1);
+    CU_ASSERT_EQUAL(report->promises[PROMISE_OCCLUSION].checked, f->lattice.profile == PROFILE_GEODETIC);
+    free(report);
     return e;
 }
 
