@@ -32,7 +32,7 @@ void queue_reset(struct queue *queue, float least_cost);
 int32_t queue_class(const struct queue *queue, float cost);
 
 /* Appends a vertex that is in no class now. */
-void queue_push(struct queue *queue, int32_t vertex, int32_t class);
+void queue_push(struct queue *queue, int32_t vertex, int32_t cost_class);
 
 /* Takes the first vertex of the cheapest class that has one; QUEUE_NONE when all are empty. */
 int32_t queue_pop(struct queue *queue);
