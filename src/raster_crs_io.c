@@ -2,6 +2,7 @@
  * reader uses the same one. */
 #include "src/raster_parts_io.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,18 +17,36 @@ PJ *raster_crs_new(PJ_CONTEXT *proj, const char *crs_wkt) {
     return crs;
 }
 
-/* The name of the first grid that PROJ cannot find, in a new string; NULL when nothing is missing. */
-static char *missing_grid_of(PJ_CONTEXT *proj, const PJ *operation) {
-    int count = proj_coordoperation_get_grid_used_count(proj, operation);
+/* How many grids of an operation PROJ cannot find, and their names in a new string. */
+static int missing_grids_of(PJ_CONTEXT *proj, const PJ *operation, char **names) {
+    int count = proj_coordoperation_get_grid_used_count(proj, operation), missing = 0;
+    char text[256] = "";
     for (int i = 0; i < count; i++) {
         const char *name = NULL, *package = NULL, *url = NULL, *full = NULL;
         int is_direct = 0, is_open = 0, is_available = 0;
-        if (proj_coordoperation_get_grid_used(proj, operation, i, &name, &full, &package, &url, &is_direct, &is_open,
-                                              &is_available) &&
-            !is_available && name != NULL)
-            return strdup(name);
+        if (!proj_coordoperation_get_grid_used(proj, operation, i, &name, &full, &package, &url, &is_direct, &is_open,
+                                               &is_available) ||
+            is_available || name == NULL)
+            continue;
+        size_t length = strlen(text);
+        snprintf(text + length, sizeof text - length, "%s%s", missing > 0 ? " and " : "", name);
+        missing++;
     }
-    return NULL;
+    *names = missing > 0 ? strdup(text) : NULL;
+    return missing;
+}
+
+/* Keeps the names of the operation that lacks the fewest grids. */
+static void note_missing(PJ_CONTEXT *proj, const PJ *operation, int *least, char **missing_grid) {
+    char *names = NULL;
+    int missing = missing_grids_of(proj, operation, &names);
+    if (names != NULL && missing < *least) {
+        free(*missing_grid);
+        *missing_grid = names;
+        *least = missing;
+    } else {
+        free(names);
+    }
 }
 
 enum scree_status raster_operation_find(PJ_CONTEXT *proj, const PJ *source, const PJ *target, const double area_deg[4],
@@ -42,6 +61,7 @@ enum scree_status raster_operation_find(PJ_CONTEXT *proj, const PJ *source, cons
                                                             area_deg[3]);
     PJ_OBJ_LIST *operations = proj_create_operations(proj, source, target, factory);
     int count = operations == NULL ? 0 : proj_list_get_count(operations);
+    int least_missing = INT_MAX;
     *pipeline = NULL;
     for (int i = 0; i < count && *pipeline == NULL; i++) {
         PJ *operation = proj_list_get(proj, operations, i);
@@ -52,8 +72,8 @@ enum scree_status raster_operation_find(PJ_CONTEXT *proj, const PJ *source, cons
             if (text != NULL) *pipeline = strdup(text);
             if (text != NULL && description != NULL) *description = strdup(proj_get_name(operation));
             proj_destroy(in_map_order);
-        } else if (missing_grid != NULL && *missing_grid == NULL) {
-            *missing_grid = missing_grid_of(proj, operation);
+        } else if (missing_grid != NULL) {
+            note_missing(proj, operation, &least_missing, missing_grid);
         }
         proj_destroy(operation);
     }

@@ -320,7 +320,12 @@ enum scree_status raster_input_scan(const struct raster *raster, const struct ra
     int right = window[0] + window[2], bottom = window[1] + window[3];
     for (int row = window[1]; row < bottom && status == SCREE_OK; row += rows) {
         int height = bottom - row < rows ? bottom - row : rows;
-        if (is_empty(band, window[0], row, window[2], height)) continue;
+        trap.text[0] = '\0';
+        if (is_empty(band, window[0], row, window[2], height)) {
+            if (trap.text[0] == '\0') continue;
+            status = raster_trap_fail(&trap, input->name, error);
+            break;
+        }
         for (int column = window[0]; column < right && status == SCREE_OK; column += columns) {
             int width = right - column < columns ? right - column : columns;
             int piece[4] = {column, row, width, height};
