@@ -136,6 +136,7 @@ bool border_join(const struct border_line *first, const struct border_line *seco
     for (int i = 0; i < 2; i++)
         if (lines[i] != NULL) gather_extremes(lines[i], offsets[i], cell_span, lowest, highest, cells);
     for (int32_t cell = 0; cell < cells; cell++) {
+        if (lowest[cell].position < 0) continue; /* a level tile may have wider samples */
         bool low_first = lowest[cell].position <= highest[cell].position;
         line->samples[line->sample_count++] = low_first ? lowest[cell] : highest[cell];
         if (lowest[cell].position != highest[cell].position)

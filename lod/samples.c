@@ -1,6 +1,7 @@
 #include "lod/samples.h"
 
 #include <math.h>
+#include <stddef.h>
 
 /* The plane through a triangle, relative to corner a. */
 struct plane {
@@ -138,7 +139,7 @@ struct triangle_error samples_triangle_error(const struct samples *samples, cons
                                              const struct sample *b, const struct sample *c) {
     struct plane plane = plane_through(a, b, c);
     struct triangle_error error = {0, 0};
-    if (samples->cell_span > 1)
+    if (samples->posts == NULL)
         error = over_extremes(samples, &plane, a, b, c);
     else if (sample_area2(a, b, c) > 1) /* by Pick's theorem, a triangle of area 1/2 holds no post but its corners */
         error = over_posts(samples, &plane, a, b, c);

@@ -21,10 +21,10 @@ struct sample {
 
 struct samples {
     int32_t columns, rows; /* cells */
-    int32_t cell_span;     /* lattice steps a cell; 1: the samples are posts */
-    const float *posts;    /* cell_span == 1: (rows + 1) rows of `stride` drawn heights; else NULL */
+    int32_t cell_span;     /* lattice steps a cell */
+    const float *posts;    /* cells of 1 step: (rows + 1) rows of `stride` drawn heights; NULL: there are extremes */
     int32_t stride;
-    const struct sample *extremes; /* cell_span > 1: 2 a cell, lowest then highest, row by row; else NULL */
+    const struct sample *extremes; /* 2 a cell, lowest then highest, row by row; NULL: there are posts */
     float rounding_steps; /* how far the drawn position of a vertex may be off its lattice position, in x and in y */
 };
 

@@ -137,3 +137,26 @@ struct tile_range lattice_tiles_touching(const struct lattice *lattice, int zoom
     touching(window.y, window.y + window.rows, span, lattice_tiles_y(lattice, zoom), &range.y_first, &range.y_last);
     return range;
 }
+
+#define MEAN_RADIUS_M 6371008.8
+
+double lattice_parallel_drop_m(const struct lattice *lattice, double y) {
+    double east_m, north_m;
+    if (lattice->profile == PROFILE_LOCAL) return 0;
+    lattice_steps_m(lattice, y, &east_m, &north_m);
+    return east_m * east_m / (2 * MEAN_RADIUS_M);
+}
+
+double lattice_meridian_drop_m(const struct lattice *lattice) {
+    if (lattice->profile == PROFILE_LOCAL) return 0;
+    double radians = lattice->spacing_y * (acos(-1.0) / 180);
+    return radians * radians * MEAN_RADIUS_M / 2;
+}
+
+void lattice_tile_drop(const struct lattice *lattice, struct tile_id tile, double *east_drop_m, double *north_drop_m) {
+    struct lattice_window window = lattice_tile_window(lattice, tile);
+    double equator = (double)(lattice->rows - 1) / 2, low = (double)window.y, high = low + window.rows;
+    double nearest = equator < low ? low : equator > high ? high : equator;
+    *east_drop_m = lattice_parallel_drop_m(lattice, nearest);
+    *north_drop_m = lattice_meridian_drop_m(lattice);
+}

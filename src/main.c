@@ -14,6 +14,7 @@ static const struct command {
     int (*run)(int argc, char **argv);
     const char *purpose;
 } commands[] = {
+    {"build", command_build, "elevation in, a pyramid of terrain tiles out"},
     {"verify", command_verify, "check that a terrain keeps its promises"},
     {"info", command_info, "what is in a terrain or a tile"},
     {"extract", command_extract, "a terrain or tile as a mesh file at a scale you choose"},

@@ -21,7 +21,7 @@ struct terrain_tile_statistics {
     uint64_t bytes;
     double tolerance_m;
     double max_error_m; /* what was measured while simplifying */
-    double svo_m;
+    double mmqe_m2;     /* mean minimum quadric error of the tile's mesh */
 };
 
 #endif

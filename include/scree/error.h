@@ -17,14 +17,14 @@ extern "C" {
 
 enum scree_status {
     SCREE_OK = 0,
-    SCREE_MORE = 1,            /* a decoder wants more bytes; not a failure */
-    SCREE_E_ARGUMENT = -1,     /* the caller asked for something that makes no sense */
-    SCREE_E_MEMORY = -2,       /* the system has no memory left */
-    SCREE_E_LIMIT = -3,        /* a stated limit (memory budget, format maximum) would be passed */
-    SCREE_E_IO = -4,           /* a file, a disk or GDAL failed */
-    SCREE_E_CORRUPT = -5,      /* bytes that no writer of the format makes */
-    SCREE_E_UNSUPPORTED = -6,  /* well formed, but of a kind that this version does not read */
-    SCREE_E_INTERRUPTED = -7   /* the user asked to stop */
+    SCREE_MORE = 1,           /* a decoder wants more bytes; not a failure */
+    SCREE_E_ARGUMENT = -1,    /* the caller asked for something that makes no sense */
+    SCREE_E_MEMORY = -2,      /* the system has no memory left */
+    SCREE_E_LIMIT = -3,       /* a stated limit (memory budget, format maximum) would be passed */
+    SCREE_E_IO = -4,          /* a file, a disk or GDAL failed */
+    SCREE_E_CORRUPT = -5,     /* bytes that no writer of the format makes */
+    SCREE_E_UNSUPPORTED = -6, /* well formed, but of a kind that this version does not read */
+    SCREE_E_INTERRUPTED = -7  /* the user asked to stop */
 };
 
 #define SCREE_NO_OFFSET (-1)

@@ -1,0 +1,125 @@
+#include "src/build.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static enum scree_status choose_lattice(const struct build_options *options, const struct raster_summary *summary,
+                                        struct build *build, struct scree_error *error) {
+    bool from_source = options->max_zoom == ZOOM_FROM_SOURCE;
+    if (options->raster.profile == PROFILE_GEODETIC) {
+        double spacing_deg = fmin(summary->spacing_x, summary->spacing_y);
+        build->max_zoom = from_source ? lattice_zoom_for_spacing(spacing_deg) : options->max_zoom;
+        build->lattice = lattice_geodetic(build->max_zoom);
+    } else {
+        enum scree_status status =
+            lattice_local(summary->columns, summary->rows, summary->bounds[0], summary->bounds[1], summary->spacing_x,
+                          summary->spacing_y, summary->metres_per_unit, &build->lattice, error);
+        if (status != SCREE_OK) return status;
+        build->max_zoom = build->lattice.finest_zoom;
+        if (!from_source && options->max_zoom > build->max_zoom)
+            return scree_fail(error, SCREE_E_ARGUMENT,
+                              "--max-zoom %d: in the local profile the raster's pixels are the finest posts, which is "
+                              "zoom %d here",
+                              options->max_zoom, build->max_zoom);
+        if (!from_source) build->max_zoom = options->max_zoom;
+    }
+    if (options->min_zoom > build->max_zoom)
+        return scree_fail(error, SCREE_E_ARGUMENT, "--min-zoom %d is finer than the finest zoom, %d", options->min_zoom,
+                          build->max_zoom);
+    return SCREE_OK;
+}
+
+enum scree_status build_prepare(const struct build_options *options, struct build *build, struct scree_error *error) {
+    enum scree_status status = raster_open(&options->raster, &build->raster, error);
+    if (status != SCREE_OK) return status;
+    const struct raster_summary *summary = raster_summary(build->raster);
+    if ((status = choose_lattice(options, summary, build, error)) != SCREE_OK) return status;
+    struct ladder_options ladder = options->ladder;
+    double lowest_m = summary->height_min_m - summary->relief_margin_m;
+    double highest_m = summary->height_max_m + summary->relief_margin_m;
+    if (options->raster.profile == PROFILE_GEODETIC) {
+        lowest_m = fmin(lowest_m, options->raster.nodata_height_m);
+        highest_m = fmax(highest_m, options->raster.nodata_height_m);
+    }
+    ladder.relief_m = highest_m - lowest_m;
+    ladder.largest_height_m = fmax(fabs(lowest_m), fabs(highest_m));
+    if ((status = ladder_make(&build->lattice, &ladder, &build->ladder, error)) != SCREE_OK) return status;
+    return raster_place(build->raster, &build->lattice, error);
+}
+
+/* Adds up the tiles of each zoom, in their order; SVO grows towards the root. */
+static void sum_up(struct build *build, int min_zoom) {
+    double finer_svo_m = 0;
+    for (int zoom = build->max_zoom; zoom >= min_zoom; zoom--) {
+        const struct pyramid_zoom *level = &build->pyramid.zooms[zoom];
+        struct layer_zoom *sum = &build->zooms[zoom];
+        double weighted_m2 = 0;
+        *sum = (struct layer_zoom){.tolerance_m = build->ladder.tolerance_m[zoom],
+                                   .height_step_m = build->ladder.border_step[zoom] * build->ladder.height_unit_m,
+                                   .tile_count = level->tiles.count,
+                                   .tiles = level->tiles.ids};
+        for (uint32_t i = 0; i < level->tiles.count; i++) {
+            const struct terrain_tile_statistics *tile = &level->statistics[i];
+            sum->vertices += tile->vertices;
+            sum->triangles += tile->triangles;
+            sum->bytes += tile->bytes;
+            sum->max_error_m = fmax(sum->max_error_m, tile->max_error_m);
+            weighted_m2 += tile->mmqe_m2 * tile->vertices;
+        }
+        sum->svo_m = fmax(finer_svo_m, sqrt(weighted_m2 / (double)(sum->vertices > 0 ? sum->vertices : 1)));
+        finer_svo_m = sum->svo_m;
+    }
+}
+
+static enum scree_status write_manifest(const struct build_options *options, struct build *build,
+                                        struct tile_store *store, struct scree_error *error) {
+    const struct raster_summary *summary = raster_summary(build->raster);
+    struct layer layer = {.lattice = &build->lattice,
+                          .min_zoom = options->min_zoom,
+                          .max_zoom = build->max_zoom,
+                          .crs_wkt = summary->crs_wkt,
+                          .datum = summary->datum,
+                          .attribution = summary->attribution,
+                          .has_normals = !options->no_normals,
+                          .is_gzipped = !options->plain,
+                          .nodata_height_m = options->raster.nodata_height_m,
+                          .zooms = build->zooms};
+    memcpy(layer.bounds, summary->bounds, sizeof layer.bounds);
+    char *text = layer_json_new(&layer, error);
+    if (text == NULL) return SCREE_E_MEMORY;
+    enum scree_status status = tile_store_finish(store, "layer.json", text, error);
+    free(text);
+    return status;
+}
+
+enum scree_status build_run(const struct build_options *options, const struct pyramid_options *watch,
+                            struct build *build, struct scree_error *error) {
+    struct tile_store *store = NULL;
+    enum scree_status status = tile_store_open(options->out, "terrain", "terrain", &store, error);
+    if (status != SCREE_OK) return status;
+    struct pyramid_options pyramid = *watch;
+    pyramid.lattice = &build->lattice;
+    pyramid.ladder = &build->ladder;
+    pyramid.raster = build->raster;
+    pyramid.nodata_height_m = options->raster.nodata_height_m;
+    pyramid.min_zoom = options->min_zoom;
+    pyramid.max_zoom = build->max_zoom;
+    pyramid.no_normals = options->no_normals;
+    pyramid.plain = options->plain;
+    pyramid.threads = options->threads;
+    pyramid.terrain = store;
+    status = pyramid_build(&pyramid, &build->pyramid, error);
+    if (status == SCREE_OK) {
+        sum_up(build, options->min_zoom);
+        status = write_manifest(options, build, store, error);
+    }
+    tile_store_free(store);
+    return status;
+}
+
+void build_release(struct build *build) {
+    pyramid_free(&build->pyramid);
+    raster_free(build->raster);
+    memset(build, 0, sizeof *build);
+}

@@ -1,0 +1,195 @@
+/* scree build: elevation in, crack-free terrain out. */
+#include "src/build.h"
+#include "src/command.h"
+#include "src/progress_io.h"
+#include "src/raster_arguments.h"
+
+#include <cpl_conv.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define EXIT_INTERRUPTED 130
+#define MAX_THREADS      256
+
+static const char help[] =
+    "Usage: scree build DEM... -o OUT [OPTION]...\n"
+    "Makes OUT/terrain, a pyramid of quantized-mesh tiles, from any rasters that GDAL reads; later ones lie on top.\n"
+    "The same input and options give the same bytes on any number of threads.\n\n"
+    "  -o OUT               folder to write to; an earlier build in it is replaced\n"
+    "  --profile NAME       geodetic (default; EPSG:4326, for Cesium) or local (the raster's own CRS and pixels)\n"
+    "  --max-zoom Z         finest zoom; default: the first that is as fine as the source\n"
+    "  --min-zoom Z         coarsest zoom that is written, default 0 (Cesium needs 0)\n"
+    "  --error M            largest vertical error in metres at zoom 0, halving with each zoom;\n"
+    "                       default: a quarter of Cesium's level error, 19267\n"
+    "  --error-at Z=M       the same for one zoom; may be given for several\n"
+    "  --no-normals         leave out the octvertexnormals extension\n"
+    "  --plain              no gzip: for servers that do not send Content-Encoding\n"
+    "  -j N                 threads, default all cores\n"
+    "  -q                   say nothing but errors\n"
+    "  --config KEY VALUE   a GDAL configuration option\n" RASTER_ARGUMENTS_HELP;
+
+struct arguments {
+    struct build_options build;
+    const char **inputs;
+    bool quiet;
+};
+
+static volatile sig_atomic_t stop_asked;
+
+static void ask_to_stop(int signal_number) {
+    (void)signal_number;
+    stop_asked = 1;
+}
+
+static int usage(const char *what, const char *argument) {
+    fprintf(stderr, "scree build: %s%s; scree build --help tells how\n", what, argument);
+    return EXIT_USAGE;
+}
+
+static bool take_error_at(const char *text, struct ladder_options *ladder) {
+    char *end;
+    long zoom = strtol(text, &end, 10);
+    double error_m;
+    if (end == text || *end != '=' || zoom < 0 || zoom > MAX_ZOOM) return false;
+    if (!argument_number(end + 1, &error_m) || error_m <= 0) return false;
+    ladder->error_at_m[zoom] = error_m;
+    return true;
+}
+
+static bool take_profile(const char *text, enum profile *profile) {
+    *profile = strcmp(text, "local") == 0 ? PROFILE_LOCAL : PROFILE_GEODETIC;
+    return *profile == PROFILE_LOCAL || strcmp(text, "geodetic") == 0;
+}
+
+/* Options that have a value; NULL when the value is fine, else what is wanted. "" when there is no such option. */
+static const char *take_valued(const char *name, const char *value, struct build_options *build) {
+    if (strcmp(name, "-o") == 0) return build->out = value, NULL;
+    if (strcmp(name, "--profile") == 0)
+        return take_profile(value, &build->raster.profile) ? NULL : "--profile wants geodetic or local, not ";
+    if (strcmp(name, "--max-zoom") == 0)
+        return argument_integer(value, 0, MAX_ZOOM, &build->max_zoom) ? NULL : "--max-zoom wants 0 to 22, not ";
+    if (strcmp(name, "--min-zoom") == 0)
+        return argument_integer(value, 0, MAX_ZOOM, &build->min_zoom) ? NULL : "--min-zoom wants 0 to 22, not ";
+    if (strcmp(name, "--error") == 0)
+        return argument_number(value, &build->ladder.root_error_m) && build->ladder.root_error_m > 0
+                   ? NULL
+                   : "--error wants metres above 0, not ";
+    if (strcmp(name, "--error-at") == 0)
+        return take_error_at(value, &build->ladder) ? NULL : "--error-at wants ZOOM=METRES, not ";
+    if (strcmp(name, "-j") == 0)
+        return argument_integer(value, 1, MAX_THREADS, &build->threads) ? NULL : "-j wants 1 to 256 threads, not ";
+    return "";
+}
+
+/* One argument that is not about reading rasters; EXIT_DONE or the code to exit with. */
+static int take(int argc, char **argv, int *at, struct arguments *arguments) {
+    const char *name = argv[(*at)++], *value = *at < argc ? argv[*at] : NULL;
+    if (strcmp(name, "-q") == 0) return arguments->quiet = true, EXIT_DONE;
+    if (strcmp(name, "--plain") == 0) return arguments->build.plain = true, EXIT_DONE;
+    if (strcmp(name, "--no-normals") == 0) return arguments->build.no_normals = true, EXIT_DONE;
+    if (strcmp(name, "--config") == 0) {
+        if (*at + 1 >= argc) return usage("--config wants a key and a value", "");
+        CPLSetConfigOption(argv[*at], argv[*at + 1]);
+        *at += 2;
+        return EXIT_DONE;
+    }
+    if (name[0] != '-' || name[1] == '\0') {
+        arguments->inputs[arguments->build.raster.input_count++] = name;
+        return EXIT_DONE;
+    }
+    if (strncmp(name, "-j", 2) == 0 && name[2] != '\0') { /* -j4, as make has it */
+        const char *wanted = take_valued("-j", name + 2, &arguments->build);
+        return wanted == NULL ? EXIT_DONE : usage(wanted, name + 2);
+    }
+    const char *wanted = take_valued(name, value != NULL ? value : "", &arguments->build);
+    if (wanted != NULL && wanted[0] == '\0') return usage("there is no option ", name);
+    if (value == NULL) return usage("a value is missing behind ", name);
+    if (wanted != NULL) return usage(wanted, value);
+    ++*at;
+    return EXIT_DONE;
+}
+
+static int parse(int argc, char **argv, struct arguments *arguments) {
+    for (int at = 1; at < argc;) {
+        struct scree_error error = {0};
+        enum argument_result taken = raster_argument_take(argc, argv, &at, &arguments->build.raster, &error);
+        if (taken == ARGUMENT_WRONG) return usage(error.text, "");
+        if (taken == ARGUMENT_TAKEN) continue;
+        int code = take(argc, argv, &at, arguments);
+        if (code != EXIT_DONE) return code;
+    }
+    if (arguments->build.raster.input_count == 0) return usage("which DEM? Name one raster or several", "");
+    if (arguments->build.out == NULL) return usage("where to? Name a folder with -o", "");
+    arguments->build.raster.inputs = arguments->inputs;
+    return EXIT_DONE;
+}
+
+static void tell_tile(void *context, uint32_t done, uint32_t in_all) {
+    progress_tell(context, done, in_all);
+}
+
+static void print_plan(const struct build *build) {
+    const struct raster_summary *summary = raster_summary(build->raster);
+    int finest = build->lattice.finest_zoom;
+    fprintf(stderr, "heights %.6g to %.6g m; %s\n", summary->height_min_m, summary->height_max_m, summary->datum);
+    fprintf(stderr, "finest zoom %d, largest error there %.4g m\n", finest, build->ladder.tolerance_m[finest]);
+}
+
+static void print_result(const struct build *build, const struct build_options *options, double seconds) {
+    printf("zoom    tiles  vertices  triangles      bytes  tolerance m  max error m    SVO m\n");
+    for (int zoom = options->min_zoom; zoom <= build->max_zoom; zoom++) {
+        const struct layer_zoom *sum = &build->zooms[zoom];
+        printf("%4d %8u %9llu %10llu %10llu %12.5g %12.5g %8.4g\n", zoom, sum->tile_count,
+               (unsigned long long)sum->vertices, (unsigned long long)sum->triangles, (unsigned long long)sum->bytes,
+               sum->tolerance_m, sum->max_error_m, sum->svo_m);
+    }
+    double posts = (double)TILE_CELLS * TILE_CELLS * build->pyramid.zooms[build->lattice.finest_zoom].tiles.count;
+    printf("%s/terrain: %.1f s, %.2f million posts a second\n", options->out, seconds, posts * 1e-6 / seconds);
+}
+
+static int run(const struct arguments *arguments) {
+    struct scree_error error = {0};
+    struct build build = {0};
+    struct progress progress;
+    enum scree_status status = build_prepare(&arguments->build, &build, &error);
+    if (status == SCREE_OK) {
+        if (!arguments->quiet) print_plan(&build);
+        progress_start(&progress, "tiles", (double)TILE_CELLS * TILE_CELLS, arguments->quiet);
+        struct pyramid_options watch = {.stop = &stop_asked, .progress = tell_tile, .progress_context = &progress};
+        status = build_run(&arguments->build, &watch, &build, &error);
+        double seconds = progress_end(&progress);
+        if (status == SCREE_OK && !arguments->quiet) print_result(&build, &arguments->build, seconds);
+    }
+    build_release(&build);
+    if (status == SCREE_OK) return EXIT_DONE;
+    if (stop_asked) {
+        fprintf(stderr, "scree build: interrupted; the tiles that are there are whole, layer.json is not written\n");
+        return EXIT_INTERRUPTED;
+    }
+    fprintf(stderr, "scree build: %s\n", error.text);
+    return EXIT_FAILED;
+}
+
+int command_build(int argc, char **argv) {
+    for (int i = 1; i < argc; i++)
+        if (strcmp(argv[i], "--help") == 0) return fputs(help, stdout) < 0 ? EXIT_FAILED : EXIT_DONE;
+    struct arguments arguments = {.build = {.max_zoom = ZOOM_FROM_SOURCE}};
+    arguments.build.threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
+    if (arguments.build.threads < 1) arguments.build.threads = 1;
+    if ((arguments.inputs = calloc((size_t)argc, sizeof *arguments.inputs)) == NULL) {
+        fprintf(stderr, "scree build: no memory for the arguments\n");
+        return EXIT_FAILED;
+    }
+    int code = parse(argc, argv, &arguments);
+    if (code == EXIT_DONE) {
+        struct sigaction action = {.sa_handler = ask_to_stop, .sa_flags = SA_RESETHAND}; /* a second one kills */
+        sigaction(SIGINT, &action, NULL);
+        sigaction(SIGTERM, &action, NULL);
+        code = run(&arguments);
+    }
+    free(arguments.inputs);
+    return code;
+}

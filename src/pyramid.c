@@ -1,0 +1,363 @@
+#include "src/pyramid.h"
+
+#include "src/tile_build.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define JOBS_A_THREAD 8 /* subtrees, so that threads end together */
+
+/* A tile at or above the zoom where the work is cut into jobs. Its memory belongs to whoever works on it: first its
+ * own worker, then, by way of `coarse`, that of its parent. */
+struct node {
+    struct tile_id id;
+    uint32_t waiting; /* children that are not done yet; under the lock */
+    struct scree_memory memory;
+    struct coarse_tile *coarse;
+};
+
+struct work {
+    const struct pyramid_options *options;
+    struct pyramid *pyramid;
+    struct tile_plan plan;
+    int job_zoom;
+    struct node *nodes[MAX_ZOOM + 1]; /* by zoom up to job_zoom, parallel to the pyramid's lists */
+    uint32_t *order;                  /* the jobs along a Z-curve */
+    pthread_mutex_t lock;             /* of what follows */
+    uint32_t next_job, tiles_done;
+    bool failed;
+    struct scree_error error;
+};
+
+struct worker {
+    struct work *work;
+    struct raster_reader *reader;
+    pthread_t thread;
+    bool started;
+};
+
+/* ---- which tiles there are ---- */
+
+static enum scree_status list_tiles(const struct pyramid_options *options, struct pyramid *pyramid, int zoom,
+                                    struct scree_error *error) {
+    struct pyramid_zoom *level = &pyramid->zooms[zoom];
+    struct lattice_window windows[2];
+    int window_count = raster_windows(options->raster, windows);
+    enum scree_status status = SCREE_OK;
+    for (int i = 0; i < window_count && status == SCREE_OK; i++) {
+        struct tile_range range = lattice_tiles_touching(options->lattice, zoom, windows[i]);
+        for (uint32_t y = range.y_first; y <= range.y_last; y++)
+            for (uint32_t x = range.x_first; x <= range.x_last && status == SCREE_OK; x++)
+                status = tile_list_add(&pyramid->memory, &level->tiles, (struct tile_id){zoom, x, y}, error);
+    }
+    for (uint32_t x = 0; zoom == 0 && x < lattice_tiles_x(options->lattice, 0) && status == SCREE_OK; x++)
+        status = tile_list_add(&pyramid->memory, &level->tiles, (struct tile_id){0, x, 0}, error);
+    if (status != SCREE_OK) return status;
+    tile_list_sort(&level->tiles);
+    uint32_t kept = 0; /* the windows may touch the same tiles */
+    for (uint32_t i = 0; i < level->tiles.count; i++) {
+        struct tile_id id = level->tiles.ids[i];
+        if (kept > 0 && level->tiles.ids[kept - 1].x == id.x && level->tiles.ids[kept - 1].y == id.y) continue;
+        level->tiles.ids[kept++] = id;
+    }
+    level->tiles.count = kept;
+    level->statistics =
+        scree_allocate(&pyramid->memory, kept, sizeof *level->statistics, "figures of all tiles", error);
+    return level->statistics != NULL ? SCREE_OK : SCREE_E_MEMORY;
+}
+
+/* A root may be on the list without being touched by data. */
+static bool touched(const struct work *work, struct tile_id id) {
+    struct lattice_window windows[2];
+    int window_count = raster_windows(work->options->raster, windows);
+    for (int i = 0; i < window_count; i++) {
+        struct tile_range range = lattice_tiles_touching(work->options->lattice, id.zoom, windows[i]);
+        if (id.x >= range.x_first && id.x <= range.x_last && id.y >= range.y_first && id.y <= range.y_last) return true;
+    }
+    return false;
+}
+
+/* ---- tiles ---- */
+
+static bool stopped(struct work *work) {
+    pthread_mutex_lock(&work->lock);
+    bool stop = work->failed;
+    pthread_mutex_unlock(&work->lock);
+    return stop || (work->options->stop != NULL && *work->options->stop != 0);
+}
+
+static struct terrain_tile_statistics *statistics_of(const struct work *work, struct tile_id id) {
+    const struct pyramid_zoom *level = &work->pyramid->zooms[id.zoom];
+    return &level->statistics[tile_list_find(&level->tiles, id)];
+}
+
+static void tell_progress(struct work *work) {
+    const struct pyramid_options *options = work->options;
+    pthread_mutex_lock(&work->lock);
+    work->tiles_done++;
+    if (options->progress != NULL)
+        options->progress(options->progress_context, work->tiles_done,
+                          work->pyramid->zooms[options->lattice->finest_zoom].tiles.count);
+    pthread_mutex_unlock(&work->lock);
+}
+
+/* Writes a tile that is at its zoom's tolerance, then hands it up unless it is a root. */
+static enum scree_status finish_tile(struct work *work, struct tile_id id, struct tile *tile, double max_error_m,
+                                     struct coarse_tile **coarse, struct scree_error *error) {
+    enum scree_status status = SCREE_OK;
+    if (id.zoom >= work->options->min_zoom && id.zoom <= work->options->max_zoom) {
+        struct terrain_tile_statistics *statistics = statistics_of(work, id);
+        status = tile_build_write(&work->plan, id, tile, work->options->terrain, statistics, error);
+        statistics->tolerance_m = work->plan.ladder->tolerance_m[id.zoom];
+        statistics->max_error_m = max_error_m;
+        statistics->mmqe_m2 = tile_mmqe_m2(tile);
+    }
+    if (status == SCREE_OK && id.zoom > 0) return tile_build_hand_up(&work->plan, id, tile, coarse, error);
+    tile_release(tile);
+    return status;
+}
+
+static enum scree_status parent_from(struct work *work, struct tile_id id, struct coarse_tile *const children[4],
+                                     struct scree_memory *memory, struct coarse_tile **coarse,
+                                     struct scree_error *error) {
+    struct tile tile;
+    double max_error_m = 0;
+    const struct coarse_tile *views[4];
+    for (int i = 0; i < 4; i++) {
+        views[i] = children[i];
+        if (children[i] != NULL) max_error_m = fmax(max_error_m, children[i]->max_error_m);
+    }
+    enum scree_status status = tile_build_parent(&work->plan, id, views, memory, &tile, error);
+    return status == SCREE_OK ? finish_tile(work, id, &tile, max_error_m, coarse, error) : status;
+}
+
+static struct tile_id child_of(struct tile_id id, int child) {
+    return (struct tile_id){id.zoom + 1, 2 * id.x + (uint32_t)(child % 2), 2 * id.y + (uint32_t)(child / 2)};
+}
+
+static bool in_lattice(const struct work *work, struct tile_id id) {
+    return lattice_tile_window(work->options->lattice, id).columns > 0;
+}
+
+static enum scree_status level_tile(struct work *work, struct tile_id id, struct scree_memory *memory,
+                                    struct coarse_tile **coarse, struct scree_error *error) {
+    struct tile tile;
+    enum scree_status status = tile_build_level(&work->plan, id, memory, &tile, error);
+    if (status != SCREE_OK) return status;
+    if (id.zoom == 0) return finish_tile(work, id, &tile, tile_max_error_m(&tile), coarse, error);
+    return tile_build_hand_up(&work->plan, id, &tile, coarse, error);
+}
+
+/* A tile with all that lies below it. */
+static enum scree_status subtree(struct worker *worker, struct tile_id id, struct scree_memory *memory,
+                                 struct coarse_tile **coarse, struct scree_error *error) {
+    struct work *work = worker->work;
+    enum scree_status status = SCREE_OK;
+    struct coarse_tile *children[4] = {NULL, NULL, NULL, NULL};
+    struct tile tile;
+    if (stopped(work)) return scree_fail(error, SCREE_E_INTERRUPTED, "interrupted");
+    if (!touched(work, id)) return level_tile(work, id, memory, coarse, error);
+    if (id.zoom == work->options->lattice->finest_zoom) {
+        status = tile_build_finest(&work->plan, id, worker->reader, memory, &tile, error);
+        if (status == SCREE_OK) status = finish_tile(work, id, &tile, tile_max_error_m(&tile), coarse, error);
+        tell_progress(work);
+        return status;
+    }
+    for (int child = 0; child < 4 && status == SCREE_OK; child++)
+        if (in_lattice(work, child_of(id, child)))
+            status = subtree(worker, child_of(id, child), memory, &children[child], error);
+    if (status == SCREE_OK) status = parent_from(work, id, children, memory, coarse, error);
+    for (int child = 0; child < 4; child++) coarse_tile_free(memory, children[child]);
+    return status;
+}
+
+/* ---- jobs ---- */
+
+static struct node *node_of(const struct work *work, struct tile_id id) {
+    uint32_t index = tile_list_find(&work->pyramid->zooms[id.zoom].tiles, id);
+    return index == TILE_NOT_LISTED ? NULL : &work->nodes[id.zoom][index];
+}
+
+/* A tile above the jobs whose children are all done; those without data are made here. */
+static enum scree_status upper_tile(struct work *work, struct node *node, struct scree_error *error) {
+    struct coarse_tile *children[4] = {NULL, NULL, NULL, NULL};
+    struct node *owners[4] = {NULL, NULL, NULL, NULL};
+    enum scree_status status = SCREE_OK;
+    for (int child = 0; child < 4 && status == SCREE_OK; child++) {
+        struct tile_id id = child_of(node->id, child);
+        if (!in_lattice(work, id)) continue;
+        owners[child] = node_of(work, id);
+        if (owners[child] != NULL)
+            children[child] = owners[child]->coarse;
+        else
+            status = level_tile(work, id, &node->memory, &children[child], error);
+    }
+    if (status == SCREE_OK) status = parent_from(work, node->id, children, &node->memory, &node->coarse, error);
+    for (int child = 0; child < 4; child++) {
+        coarse_tile_free(owners[child] != NULL ? &owners[child]->memory : &node->memory, children[child]);
+        if (owners[child] != NULL) owners[child]->coarse = NULL;
+    }
+    return status;
+}
+
+/* Counts a tile as done; returns its parent when that was the last child. */
+static struct node *parent_that_is_ready(struct work *work, const struct node *node) {
+    if (node->id.zoom == 0) return NULL;
+    struct node *parent = node_of(work, (struct tile_id){node->id.zoom - 1, node->id.x / 2, node->id.y / 2});
+    pthread_mutex_lock(&work->lock);
+    bool ready = --parent->waiting == 0;
+    pthread_mutex_unlock(&work->lock);
+    return ready ? parent : NULL;
+}
+
+static void fail(struct work *work, const struct scree_error *error) {
+    pthread_mutex_lock(&work->lock);
+    if (!work->failed) work->error = *error;
+    work->failed = true;
+    pthread_mutex_unlock(&work->lock);
+}
+
+static struct node *next_job(struct work *work) {
+    struct node *job = NULL;
+    pthread_mutex_lock(&work->lock);
+    if (!work->failed && work->next_job < work->pyramid->zooms[work->job_zoom].tiles.count)
+        job = &work->nodes[work->job_zoom][work->order[work->next_job++]];
+    pthread_mutex_unlock(&work->lock);
+    return job;
+}
+
+static void *run_worker(void *argument) {
+    struct worker *worker = argument;
+    for (struct node *job = next_job(worker->work); job != NULL; job = next_job(worker->work)) {
+        struct scree_error error = {0};
+        enum scree_status status = subtree(worker, job->id, &job->memory, &job->coarse, &error);
+        for (struct node *node = job; status == SCREE_OK;) {
+            if ((node = parent_that_is_ready(worker->work, node)) == NULL) break;
+            status = upper_tile(worker->work, node, &error);
+        }
+        if (status != SCREE_OK) fail(worker->work, &error);
+    }
+    return NULL;
+}
+
+static uint64_t z_curve(struct tile_id id) {
+    uint64_t key = 0;
+    for (int bit = 31; bit >= 0; bit--) key = key << 2 | (uint64_t)(id.y >> bit & 1) << 1 | (id.x >> bit & 1);
+    return key;
+}
+
+struct ranked {
+    uint64_t key;
+    uint32_t index;
+};
+
+static int by_key(const void *left, const void *right) {
+    const struct ranked *a = left, *b = right;
+    return a->key < b->key ? -1 : 1; /* keys differ */
+}
+
+static enum scree_status order_jobs(struct work *work, struct scree_error *error) {
+    const struct tile_list *jobs = &work->pyramid->zooms[work->job_zoom].tiles;
+    struct scree_memory *memory = &work->pyramid->memory;
+    struct ranked *ranked = scree_allocate(memory, jobs->count, sizeof *ranked, "jobs", error);
+    work->order = scree_allocate(memory, jobs->count, sizeof *work->order, "jobs", error);
+    if (ranked != NULL && work->order != NULL) {
+        for (uint32_t i = 0; i < jobs->count; i++) ranked[i] = (struct ranked){z_curve(jobs->ids[i]), i};
+        qsort(ranked, jobs->count, sizeof *ranked, by_key);
+        for (uint32_t i = 0; i < jobs->count; i++) work->order[i] = ranked[i].index;
+    }
+    scree_release(memory, ranked);
+    return ranked != NULL && work->order != NULL ? SCREE_OK : SCREE_E_MEMORY;
+}
+
+static enum scree_status make_nodes(struct work *work, struct scree_error *error) {
+    int finest = work->options->lattice->finest_zoom;
+    uint32_t wanted = (uint32_t)work->options->threads * JOBS_A_THREAD;
+    while (work->job_zoom < finest && work->pyramid->zooms[work->job_zoom].tiles.count < wanted) work->job_zoom++;
+    for (int zoom = 0; zoom <= work->job_zoom; zoom++) {
+        const struct tile_list *tiles = &work->pyramid->zooms[zoom].tiles;
+        work->nodes[zoom] =
+            scree_allocate(&work->pyramid->memory, tiles->count, sizeof *work->nodes[zoom], "jobs", error);
+        if (work->nodes[zoom] == NULL) return SCREE_E_MEMORY;
+        for (uint32_t i = 0; i < tiles->count; i++) {
+            work->nodes[zoom][i].id = tiles->ids[i];
+            if (zoom > 0)
+                node_of(work, (struct tile_id){zoom - 1, tiles->ids[i].x / 2, tiles->ids[i].y / 2})->waiting++;
+        }
+    }
+    return order_jobs(work, error);
+}
+
+/* Roots that no data touch have no children to wait for, unless they are jobs themselves. */
+static enum scree_status level_roots(struct work *work, struct scree_error *error) {
+    enum scree_status status = SCREE_OK;
+    for (uint32_t i = 0; work->job_zoom > 0 && i < work->pyramid->zooms[0].tiles.count && status == SCREE_OK; i++) {
+        struct node *node = &work->nodes[0][i];
+        if (!touched(work, node->id)) status = level_tile(work, node->id, &node->memory, &node->coarse, error);
+    }
+    return status;
+}
+
+static enum scree_status run_workers(struct work *work, struct scree_error *error) {
+    int threads = work->options->threads;
+    struct scree_memory *memory = &work->pyramid->memory;
+    struct worker *workers = scree_allocate(memory, (size_t)threads, sizeof *workers, "workers", error);
+    enum scree_status status = workers != NULL ? SCREE_OK : SCREE_E_MEMORY;
+    for (int i = 0; i < threads && status == SCREE_OK; i++) {
+        workers[i].work = work;
+        status = raster_reader_new(work->options->raster, &workers[i].reader, error);
+    }
+    for (int i = 0; i < threads && status == SCREE_OK; i++) {
+        workers[i].started = pthread_create(&workers[i].thread, NULL, run_worker, &workers[i]) == 0;
+        if (i == 0 && !workers[i].started)
+            status = scree_fail(error, SCREE_E_LIMIT, "no thread can be started; the system's limit is reached");
+    }
+    for (int i = 0; workers != NULL && i < threads; i++) {
+        if (workers[i].started) pthread_join(workers[i].thread, NULL);
+        raster_reader_free(workers[i].reader);
+    }
+    scree_release(memory, workers);
+    return status;
+}
+
+static void release_work(struct work *work) {
+    struct scree_memory *memory = &work->pyramid->memory;
+    for (int zoom = 0; zoom <= work->job_zoom; zoom++) {
+        for (uint32_t i = 0; work->nodes[zoom] != NULL && i < work->pyramid->zooms[zoom].tiles.count; i++)
+            coarse_tile_free(&work->nodes[zoom][i].memory, work->nodes[zoom][i].coarse);
+        scree_release(memory, work->nodes[zoom]);
+    }
+    scree_release(memory, work->order);
+    pthread_mutex_destroy(&work->lock);
+}
+
+enum scree_status pyramid_build(const struct pyramid_options *options, struct pyramid *pyramid,
+                                struct scree_error *error) {
+    enum scree_status status = SCREE_OK;
+    struct work work = {
+        .options = options,
+        .pyramid = pyramid,
+        .plan = {options->lattice, options->ladder, options->nodata_height_m, options->no_normals, options->plain}};
+    memset(pyramid, 0, sizeof *pyramid);
+    if (pthread_mutex_init(&work.lock, NULL) != 0) return scree_fail(error, SCREE_E_LIMIT, "no lock can be made");
+    for (int zoom = 0; zoom <= options->lattice->finest_zoom && status == SCREE_OK; zoom++)
+        status = list_tiles(options, pyramid, zoom, error);
+    if (status == SCREE_OK) status = make_nodes(&work, error);
+    if (status == SCREE_OK) status = level_roots(&work, error);
+    if (status == SCREE_OK) status = run_workers(&work, error);
+    if (status == SCREE_OK && work.failed) {
+        if (error != NULL) *error = work.error;
+        status = work.error.status;
+    }
+    release_work(&work);
+    return status;
+}
+
+void pyramid_free(struct pyramid *pyramid) {
+    for (int zoom = 0; zoom <= MAX_ZOOM; zoom++) {
+        scree_release(&pyramid->memory, pyramid->zooms[zoom].statistics);
+        tile_list_free(&pyramid->memory, &pyramid->zooms[zoom].tiles);
+    }
+}

@@ -1,0 +1,49 @@
+/* The pyramid: every tile of every zoom, depth first over the quadtree, on any number of threads.
+ *
+ * A tile is a pure function of its posts or of its four children, so results do not depend on who works when. Each
+ * worker goes down a subtree of its own with one tile a zoom in memory; whoever finishes the last child of a tile
+ * above the subtrees goes on with that tile. */
+#ifndef SCREE_PYRAMID_H
+#define SCREE_PYRAMID_H
+
+#include "src/ladder.h"
+#include "src/raster_io.h"
+#include "src/terrain_tile.h"
+#include "src/tile_list.h"
+#include "src/tile_store_io.h"
+#include <scree/error.h>
+#include <signal.h>
+
+/* The tiles of a zoom that the data touch (and, at zoom 0, every root). */
+struct pyramid_zoom {
+    struct tile_list tiles;
+    struct terrain_tile_statistics *statistics; /* one a tile, filled by the build */
+};
+
+struct pyramid_options {
+    const struct lattice *lattice;
+    const struct ladder *ladder;
+    const struct raster *raster;
+    double nodata_height_m;
+    int min_zoom, max_zoom; /* tiles of other zooms are made but not written */
+    bool no_normals, plain; /* without octvertexnormals; without gzip */
+    int threads;            /* at least 1 */
+    struct tile_store *terrain;
+    const volatile sig_atomic_t *stop; /* set from outside: give up; may be NULL */
+    /* called under a lock, with the number of tiles of the finest zoom that are done */
+    void (*progress)(void *context, uint32_t tiles_done, uint32_t tiles_in_all);
+    void *progress_context;
+};
+
+struct pyramid {
+    struct scree_memory memory; /* of the lists */
+    struct pyramid_zoom zooms[MAX_ZOOM + 1];
+};
+
+/* Builds and writes all tiles. On failure the first error is told and no more tiles are begun. `pyramid` is to be freed
+ * in any case. */
+enum scree_status pyramid_build(const struct pyramid_options *options, struct pyramid *pyramid,
+                                struct scree_error *error);
+void pyramid_free(struct pyramid *pyramid);
+
+#endif
