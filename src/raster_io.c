@@ -337,7 +337,10 @@ enum scree_status raster_open(const struct raster_options *options, struct raste
         status = scree_fail(error, SCREE_E_MEMORY, "no memory for a raster");
         goto cleanup;
     }
+    struct raster_trap trap;
+    raster_trap_set(&trap); /* a driver that cannot be loaded is not missed until a file needs it */
     GDALAllRegister();
+    raster_trap_clear();
     if (CPLGetConfigOption("GDAL_CACHEMAX", NULL) == NULL) GDALSetCacheMax64(CACHE_BYTES);
     raster->options = *options;
     raster->options.inputs = NULL; /* the caller's strings need not outlive this call */

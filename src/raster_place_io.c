@@ -32,8 +32,10 @@ static struct arc arc_of(const struct lattice *lattice, double west_deg, double 
 static enum scree_status place_layer(const struct raster_group *group, const struct lattice *lattice,
                                      struct raster_layer *layer, struct scree_error *error) {
     struct arc arc = arc_of(lattice, group->west_deg, group->east_deg);
-    if (group->is_around) arc.first += turn_of(lattice) / 2; /* the group's mosaic holds two turns: take the middle */
-    if (group->is_around) arc.count = turn_of(lattice);
+    if (group->is_around) { /* the group's mosaic holds two turns: take the middle */
+        arc.first += group->geotransform[1] > 0 ? turn_of(lattice) / 2 : -turn_of(lattice) / 2;
+        arc.count = turn_of(lattice);
+    }
     int64_t south = (int64_t)floor((group->south_deg - lattice->south) / lattice->spacing_y + SNAP);
     int64_t north = (int64_t)ceil((group->north_deg - lattice->south) / lattice->spacing_y - SNAP);
     if (south < 0) south = 0;

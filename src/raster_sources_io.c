@@ -141,7 +141,9 @@ static enum scree_status check_band(const struct raster *raster, GDALDatasetH da
                           input->band);
     input->is_wide = type != GDT_Float32 && GDALGetDataTypeSizeBits(type) > 16;
     int has_nodata = FALSE;
-    double nodata = GDALGetRasterNoDataValue(band, &has_nodata);
+    double nodata = type == GDT_Int64    ? (double)GDALGetRasterNoDataValueAsInt64(band, &has_nodata)
+                    : type == GDT_UInt64 ? (double)GDALGetRasterNoDataValueAsUInt64(band, &has_nodata)
+                                         : GDALGetRasterNoDataValue(band, &has_nodata);
     input->has_nodata = raster->options.has_nodata || has_nodata;
     input->nodata = raster->options.has_nodata ? raster->options.nodata : nodata;
     if (!input->is_wide && isfinite(input->nodata)) /* what a float band holds is the nearest float */

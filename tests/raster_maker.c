@@ -29,7 +29,12 @@ void make_raster(const struct raster_fixture *f) {
     if (f->pixel_x != 0) need(GDALSetGeoTransform(dataset, geotransform) == CE_None, "GDALSetGeoTransform");
     if (f->is_point) need(GDALSetMetadataItem(dataset, "AREA_OR_POINT", "Point", NULL) == CE_None, "AREA_OR_POINT");
     GDALRasterBandH band = GDALGetRasterBand(dataset, 1);
-    if (f->has_nodata) need(GDALSetRasterNoDataValue(band, f->nodata) == CE_None, "nodata");
+    if (f->has_nodata) {
+        CPLErr failed = type == GDT_Int64    ? GDALSetRasterNoDataValueAsInt64(band, (int64_t)f->nodata)
+                        : type == GDT_UInt64 ? GDALSetRasterNoDataValueAsUInt64(band, (uint64_t)f->nodata)
+                                             : GDALSetRasterNoDataValue(band, f->nodata);
+        need(failed == CE_None, "nodata");
+    }
     if (f->unit != NULL) need(GDALSetRasterUnitType(band, f->unit) == CE_None, "unit");
     if (f->scale != 0) need(GDALSetRasterScale(band, f->scale) == CE_None, "scale");
     if (f->offset != 0) need(GDALSetRasterOffset(band, f->offset) == CE_None, "offset");

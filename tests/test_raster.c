@@ -24,7 +24,8 @@ static double waves_utm(double x, double y) {
 }
 
 static double integers(double x, double y) {
-    return floor(fmod(fabs(x * 7919 + y * 104729), 200));
+    double hash = floor(fmod(fabs(x * 7919 + y * 104729), 200));
+    return fmod(hash, 17) == 3 ? 255 : hash;
 }
 
 static const struct raster_fixture near_bern = {.path = "/vsimem/plane.tif",
@@ -150,8 +151,8 @@ static void test_registration_projected(void) {
 
 /* Every type of band gives the same heights, scale and offset included. */
 static void test_types(void) {
-    static const GDALDataType types[] = {GDT_Byte,   GDT_Int16,   GDT_UInt16, GDT_Int32,
-                                         GDT_UInt32, GDT_Float32, GDT_Float64};
+    static const GDALDataType types[] = {GDT_Byte,    GDT_Int16,   GDT_UInt16, GDT_Int32, GDT_UInt32,
+                                         GDT_Float32, GDT_Float64, GDT_Int64,  GDT_UInt64};
     struct raster_fixture fixture = near_bern;
     fixture.path = "/vsimem/type.tif";
     fixture.columns = 40;
@@ -170,7 +171,10 @@ static void test_types(void) {
         for (int y = 0; y < fixture.rows; y++)
             for (int x = 0; x < fixture.columns; x++) {
                 double at_x = 7 + (x + 0.5) * 0.001, at_y = 47 + (fixture.rows - 1 - y + 0.5) * -0.001;
-                CU_ASSERT_EQUAL(post_m(&r, x, y), (float)(integers(at_x, at_y) * 0.25 - 7));
+                double value = integers(at_x, at_y);
+                float height_m = post_m(&r, x, y);
+                bool is_right = value == 255 ? height_m < 43 : height_m == (float)(value * 0.25 - 7);
+                CU_ASSERT_TRUE(is_right);
             }
         CU_ASSERT_TRUE(r.summary->height_min_m >= -7);
         CU_ASSERT_TRUE(r.summary->height_max_m <= 200 * 0.25 - 7);

@@ -54,6 +54,7 @@ static void test_globes(void) {
         {-0.5, 90.5, 1, 1, 361, 181, "EPSG:4326"},   {-0.5, 90.5, 1.0002, 1, 360, 181, "EPSG:4326"},
         {-180.5, 90.5, 1, 1, 361, 181, "EPSG:4326"}, {0, 90, 1, 1, 360, 180, "EPSG:4269"},
         {-180.5, 90.5, 1, 1, 360, 181, "EPSG:4258"}, {20, 90, 1, 1, 360, 180, "EPSG:4326"},
+        {180, 90, -1, 1, 360, 180, "EPSG:4326"},     {-180.5, -90.5, 1, -1, 360, 181, "EPSG:4326"},
     };
     for (size_t i = 0; i < sizeof globes / sizeof *globes; i++) {
         struct raster_fixture fixture = {.path = "/vsimem/globe.tif",
