@@ -115,7 +115,8 @@ static void take_origin_off(struct extract_mesh *mesh) {
             high = fmax(high, mesh->xyz[3 * (size_t)i + (size_t)axis]);
         }
         mesh->origin[axis] = 0;
-        if (mesh->vertex_count == 0 || fmax(-low, high) < LARGE_FOR_FLOATS) continue;
+        double largest = fmax(-low, high);
+        if (mesh->vertex_count == 0 || largest < LARGE_FOR_FLOATS || largest <= high - low) continue; /* no help */
         mesh->origin[axis] = floor(low / 2 + high / 2);
         for (uint32_t i = 0; i < mesh->vertex_count; i++) mesh->xyz[3 * (size_t)i + (size_t)axis] -= mesh->origin[axis];
     }

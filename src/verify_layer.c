@@ -63,9 +63,12 @@ static enum scree_status check_available(struct scree_memory *memory, const stru
     return SCREE_OK;
 }
 
+/* From the coarsest zoom on that the build was asked for; other producers' terrain from the roots on. */
 static void check_ancestors(const struct terrain_set *set, struct verify_report *report) {
-    uint32_t roots = set->layer.lattice.profile == PROFILE_GEODETIC ? 2 : 1;
-    for (uint32_t x = 0; x < roots; x++) {
+    const struct layer_info *layer = &set->layer;
+    uint32_t roots = layer->lattice.profile == PROFILE_GEODETIC ? 2 : 1;
+    int coarsest = layer->is_ours ? layer->min_zoom : 0;
+    for (uint32_t x = 0; x < roots && coarsest == 0; x++) {
         struct tile_id root = {.x = x};
         if (tile_list_find(&set->tiles[0], root) == TILE_NOT_LISTED) {
             report_broken(report, PROMISE_ANCESTORS, "the root tile " TILE " is missing", TILE_OF(root));
@@ -73,7 +76,7 @@ static void check_ancestors(const struct terrain_set *set, struct verify_report 
             report_held(report, PROMISE_ANCESTORS);
         }
     }
-    for (int zoom = 1; zoom <= MAX_ZOOM; zoom++)
+    for (int zoom = coarsest + 1; zoom <= MAX_ZOOM; zoom++)
         for (uint32_t i = 0; i < set->tiles[zoom].count; i++) {
             struct tile_id id = set->tiles[zoom].ids[i];
             struct tile_id parent = {.zoom = zoom - 1, .x = id.x / 2, .y = id.y / 2};

@@ -21,5 +21,6 @@ SUITE(raster_datum)
 SUITE(raster_globe)
 SUITE(raster_mosaic)
 SUITE(extract)
+SUITE(against)
 
 #undef SUITE
