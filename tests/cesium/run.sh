@@ -10,7 +10,7 @@ skip() {
     echo "check-cesium: skipped: $*"
     exit 0
 }
-for tool in node npm chromium gdal_translate gdaltransform; do
+for tool in node npm chromium gdalinfo gdal_translate gdaltransform; do
     command -v $tool >/dev/null || skip "$tool is not installed (./bootstrap extra installs it)"
 done
 
@@ -23,5 +23,5 @@ fi
 
 dem=$top/samples/jacksboro.vrt
 rm -rf "$work/terrain"
-"$build/scree" build -q "$dem" -o "$work"
+"$build/scree" build -q --error 4000 "$dem" -o "$work"
 NODE_PATH=$work/node_modules node "$top/tests/cesium/terrain.js" "$dem" "$work" "$top/samples/cesium/serve.js"
