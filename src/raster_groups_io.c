@@ -15,6 +15,7 @@ enum { GRID_SAMPLES = 33, EDGE_SAMPLES = 257, ALL_SAMPLES = GRID_SAMPLES * GRID_
 void raster_group_free(struct raster_group *group) {
     free(group->to_lonlat);
     free(group->shift);
+    raster_enclosed_free(&group->enclosed);
     *group = (struct raster_group){0};
 }
 

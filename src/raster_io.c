@@ -182,12 +182,29 @@ static enum scree_status describe_heights(struct raster *raster, PJ_CONTEXT *pro
     return status;
 }
 
+/* What the scan has gathered about voids, group by group. */
+static enum scree_status finish_enclosed(struct raster *raster, struct scree_error *error) {
+    struct raster_trap trap;
+    raster_trap_set(&trap);
+    enum scree_status status = SCREE_OK;
+    for (int i = 0; i < raster->group_count && status == SCREE_OK; i++) {
+        status = raster_enclosed_finish(&raster->groups[i], error);
+        if (raster->groups[i].enclosed.heights_m != NULL) raster->has_enclosed = raster->fill_distance > 0;
+    }
+    raster_trap_clear();
+    return status;
+}
+
 static enum scree_status scan(struct raster *raster, PJ_CONTEXT *proj, double overshoot, struct scree_error *error) {
     struct raster_summary *summary = &raster->summary;
     bool has_heights = false;
     summary->height_min_m = INFINITY;
     summary->height_max_m = -INFINITY;
     double uncertainty_m = 0;
+    for (int i = 0; i < raster->group_count; i++) {
+        enum scree_status status = raster_enclosed_make(&raster->groups[i], error);
+        if (status != SCREE_OK) return status;
+    }
     for (int i = 0; i < raster->input_count; i++) {
         const struct raster_input *input = &raster->inputs[i];
         const struct raster_group *group = &raster->groups[input->group];
@@ -355,6 +372,7 @@ enum scree_status raster_open(const struct raster_options *options, struct raste
                                                    : summarize_geodetic(raster, error);
     if (status == SCREE_OK) status = describe_heights(raster, proj, error);
     if (status == SCREE_OK) status = scan(raster, proj, overshoot, error);
+    if (status == SCREE_OK) status = finish_enclosed(raster, error);
     if (status == SCREE_OK) status = find_attribution(raster, error);
 cleanup:
     if (proj != NULL) proj_context_destroy(proj);
@@ -395,7 +413,7 @@ static enum scree_status find_pole(struct raster *raster, double latitude_deg, f
     struct raster_field *field = NULL;
     float heights_m[POLE_SAMPLES];
     enum scree_status status = raster_placement_make(raster, &ring, &placement, error);
-    if (status == SCREE_OK) status = raster_field_new(raster, &placement, &field, error);
+    if (status == SCREE_OK) status = raster_field_new(raster, &placement, false, &field, error);
     if (status == SCREE_OK) status = raster_field_read(field, 0, 0, POLE_SAMPLES, 1, heights_m, error);
     double sum_m = 0;
     int count = 0;

@@ -37,6 +37,7 @@ struct field_layer {
 
 struct raster_field {
     const struct raster *raster;
+    bool is_enclosed; /* not the heights, but what lies in enclosed voids */
     const struct raster_placement *placement;
     PJ_CONTEXT *proj;
     int input_count, layer_count, open_count;
@@ -79,6 +80,12 @@ static CPLErr read_cleaned(void *argument, int column, int row, int columns, int
     GDALDatasetH dataset = opened(link);
     if (dataset == NULL) return CE_Failure;
     return raster_input_read(link->input, dataset, column, row, columns, rows, heights_m);
+}
+
+static CPLErr read_enclosed(void *argument, int column, int row, int columns, int rows, void *heights_m) {
+    const struct field_layer *link = argument;
+    raster_enclosed_read(link->group, column, row, columns, rows, heights_m);
+    return CE_None;
 }
 
 /* How a cell of several pixels becomes one: methods that look for an extreme keep it, those that pick a pixel go on
@@ -194,9 +201,10 @@ static CPLErr put(GDALDatasetH target, GDALDatasetH source, int64_t from_x, int6
 
 static bool mosaic_group(struct raster_field *field, struct field_layer *link) {
     const struct raster_group *group = link->group;
-    link->mosaic = virtual_new(group->columns, group->rows);
+    link->mosaic = field->is_enclosed ? virtual_by(read_enclosed, link, group->columns, group->rows)
+                                      : virtual_new(group->columns, group->rows);
     if (link->mosaic == NULL) return false;
-    for (int i = 0; i < group->input_count; i++) {
+    for (int i = 0; i < group->input_count && !field->is_enclosed; i++) {
         const struct field_input *part = &field->inputs[group->first_input + i];
         if (put(link->mosaic, part->cleaned, 0, 0, part->input->group_column, part->input->group_row,
                 part->input->columns, part->input->rows) != CE_None)
@@ -282,7 +290,7 @@ static bool build_layer(struct raster_field *field, struct field_layer *link) {
 }
 
 enum scree_status raster_field_new(const struct raster *raster, const struct raster_placement *placement,
-                                   struct raster_field **result, struct scree_error *error) {
+                                   bool is_enclosed, struct raster_field **result, struct scree_error *error) {
     struct raster_trap trap;
     raster_trap_set(&trap);
     enum scree_status status = scree_fail(NULL, SCREE_E_MEMORY, "memory");
@@ -290,6 +298,7 @@ enum scree_status raster_field_new(const struct raster *raster, const struct ras
     if (field == NULL) goto cleanup;
     field->raster = raster;
     field->placement = placement;
+    field->is_enclosed = is_enclosed;
     field->proj = raster_proj_new();
     field->inputs = calloc((size_t)raster->input_count, sizeof *field->inputs);
     field->layers = calloc((size_t)raster->group_count, sizeof *field->layers);
@@ -299,7 +308,7 @@ enum scree_status raster_field_new(const struct raster *raster, const struct ras
     status = SCREE_E_IO;
     field->posts = virtual_new(placement->columns, placement->rows);
     if (field->posts == NULL) goto cleanup;
-    for (int i = 0; i < raster->input_count; i++) {
+    for (int i = 0; i < raster->input_count && !is_enclosed; i++) {
         struct field_input *link = &field->inputs[i];
         field->input_count++;
         link->field = field;
@@ -313,7 +322,8 @@ enum scree_status raster_field_new(const struct raster *raster, const struct ras
         link->field = field;
         link->group = &raster->groups[i];
         link->layer = &placement->layers[i];
-        if (link->layer->columns > 0 && !build_layer(field, link)) goto cleanup;
+        bool is_needed = link->layer->columns > 0 && (!is_enclosed || link->group->enclosed.heights_m != NULL);
+        if (is_needed && !build_layer(field, link)) goto cleanup;
     }
     status = SCREE_OK;
 cleanup:

@@ -34,6 +34,16 @@ struct raster_input {
     int group_column, group_row; /* where its first pixel lies in the group */
 };
 
+/* Heights of a group on a coarse grid, for voids that are too wide for GDALFillNodata but enclosed by data. */
+struct raster_enclosed {
+    int cell; /* pixels along the side of a cell */
+    int columns, rows;
+    double *sums_m; /* while inputs are scanned */
+    uint64_t *counts;
+    uint64_t valid;   /* pixels that hold a height */
+    float *heights_m; /* afterwards; NaN outside of the data; NULL: the group has no voids */
+};
+
 struct raster_group {
     int first_input, input_count;
     int columns, rows;
@@ -46,6 +56,7 @@ struct raster_group {
     double west_deg, south_deg, east_deg, north_deg; /* of the pixels' outer edges, unwrapped */
     double spacing_deg;
     double shift_min_m, shift_max_m;
+    struct raster_enclosed enclosed;
 };
 
 struct raster_layer {
@@ -66,6 +77,7 @@ struct raster {
     char *source_srs;
     GDALResampleAlg resampling;
     int fill_distance;
+    bool has_enclosed; /* some group has voids */
     int input_count, group_count;
     struct raster_input *inputs;
     struct raster_group *groups;
@@ -100,7 +112,7 @@ struct raster_range {
     bool has_heights;
 };
 /* The range of the heights in a window of pixels, read block by block. */
-enum scree_status raster_input_scan(const struct raster *raster, const struct raster_input *input, const int window[4],
+enum scree_status raster_input_scan(struct raster *raster, const struct raster_input *input, const int window[4],
                                     struct raster_range *range, struct scree_error *error);
 
 /* raster_units_io.c: the factor from a unit's name to metres; false when nobody knows it. */
@@ -148,18 +160,30 @@ enum scree_status raster_operation_find(PJ_CONTEXT *proj, const PJ *source, cons
 /* The CRS of a WKT, without a bound transformation around it. */
 PJ *raster_crs_new(PJ_CONTEXT *proj, const char *crs_wkt);
 
-/* raster_mosaic_io.c: one thread's virtual rasters. */
+/* raster_enclosed_io.c: voids that are enclosed by data, on a coarse grid of the group's pixels. */
+enum scree_status raster_enclosed_make(struct raster_group *group, struct scree_error *error);
+void raster_enclosed_free(struct raster_enclosed *enclosed);
+void raster_enclosed_add(struct raster_group *group, int column, int row, int columns, int rows,
+                         const float *heights_m);
+enum scree_status raster_enclosed_finish(struct raster_group *group, struct scree_error *error);
+/* Heights of a window of the group's pixels, NaN outside of the data. */
+void raster_enclosed_read(const struct raster_group *group, int column, int row, int columns, int rows,
+                          float *heights_m);
+
+/* raster_mosaic_io.c: one thread's virtual rasters: of the heights, or of what lies in enclosed voids. */
 struct raster_field;
 enum scree_status raster_field_new(const struct raster *raster, const struct raster_placement *placement,
-                                   struct raster_field **field, struct scree_error *error);
+                                   bool is_enclosed, struct raster_field **field, struct scree_error *error);
 void raster_field_free(struct raster_field *field);
 /* Heights of posts inside the lattice, rows from the south, contiguous; NaN where there are none. `x` is wrapped. */
 enum scree_status raster_field_read(struct raster_field *field, int64_t x, int64_t y, int columns, int rows,
                                     float *heights_m, struct scree_error *error);
 
-/* raster_voids_io.c: fills the voids of a region's inner part: `margin` posts lie around it on each side. A void
- * inside of the data is interpolated, others become `outside_m`. The margin must be distance + 1 at least. */
-enum scree_status raster_voids_fill(float *region_m, int columns, int rows, int margin, int distance, float outside_m,
+/* raster_voids_io.c: fills the voids inside of the data in a region's inner part: `margin` posts lie around it on each
+ * side, distance + 1 at least. Other voids of the inner part stay NaN. */
+enum scree_status raster_voids_fill(float *region_m, int columns, int rows, int margin, int distance,
                                     struct scree_error *error);
+/* GDALFillNodata on an array: where `valid` is 0, heights are interpolated. */
+bool raster_fill_nodata(float *heights_m, unsigned char *valid, int stride, int columns, int rows, int distance);
 
 #endif

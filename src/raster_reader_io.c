@@ -25,6 +25,7 @@ struct block {
 struct raster_reader {
     const struct raster *raster;
     struct raster_field *field;
+    struct raster_field *enclosed; /* NULL: no input has voids */
     uint64_t clock;
     int block_count;
     struct block blocks[MAX_BLOCKS];
@@ -37,7 +38,9 @@ enum scree_status raster_reader_new(const struct raster *raster, struct raster_r
     struct raster_reader *reader = calloc(1, sizeof *reader);
     if (reader == NULL) return scree_fail(error, SCREE_E_MEMORY, "no memory for a reader");
     reader->raster = raster;
-    enum scree_status status = raster_field_new(raster, &raster->placement, &reader->field, error);
+    enum scree_status status = raster_field_new(raster, &raster->placement, false, &reader->field, error);
+    if (status == SCREE_OK && raster->has_enclosed)
+        status = raster_field_new(raster, &raster->placement, true, &reader->enclosed, error);
     if (status != SCREE_OK) {
         raster_reader_free(reader);
         return status;
@@ -48,6 +51,7 @@ enum scree_status raster_reader_new(const struct raster *raster, struct raster_r
 
 void raster_reader_free(struct raster_reader *reader) {
     if (reader == NULL) return;
+    raster_field_free(reader->enclosed);
     raster_field_free(reader->field);
     for (int i = 0; i < reader->block_count; i++) {
         free(reader->blocks[i].heights_m);
@@ -58,22 +62,28 @@ void raster_reader_free(struct raster_reader *reader) {
 }
 
 /* A pole is one point, so its row has one height. */
-static void level_pole(const struct raster_reader *reader, struct block *block, int64_t post_row, float pole_m) {
+static void level_pole(const struct raster_reader *reader, const struct block *block, int64_t post_row, float pole_m,
+                       float *heights_m) {
     const struct raster_placement *placement = &reader->raster->placement;
     int64_t row = post_row - (block->y * SIDE - SHIFT);
     if (row < 0 || row >= SIDE || post_row < placement->y || post_row >= placement->y + placement->rows) return;
-    for (int i = 0; i < SIDE; i++) block->heights_m[row * SIDE + i] = pole_m;
+    for (int i = 0; i < SIDE; i++) heights_m[row * SIDE + i] = pole_m;
+}
+
+static void level_poles(const struct raster_reader *reader, const struct block *block, float nodata_m,
+                        float *heights_m) {
+    const struct lattice *lattice = &reader->raster->placement.lattice;
+    if (lattice->profile != PROFILE_GEODETIC) return;
+    const float *pole_m = reader->raster->pole_m;
+    level_pole(reader, block, 0, isnan(pole_m[0]) ? nodata_m : pole_m[0], heights_m);
+    level_pole(reader, block, lattice->rows - 1, isnan(pole_m[1]) ? nodata_m : pole_m[1], heights_m);
 }
 
 static enum scree_status load(struct raster_reader *reader, struct block *block, struct scree_error *error) {
-    const struct lattice *lattice = &reader->raster->placement.lattice;
     enum scree_status status = raster_field_read(reader->field, block->x * SIDE - SHIFT, block->y * SIDE - SHIFT, SIDE,
                                                  SIDE, block->heights_m, error);
     if (status != SCREE_OK) return status;
-    if (lattice->profile == PROFILE_GEODETIC) {
-        level_pole(reader, block, 0, reader->raster->pole_m[0]);
-        level_pole(reader, block, lattice->rows - 1, reader->raster->pole_m[1]);
-    }
+    level_poles(reader, block, NAN, block->heights_m);
     int voids = 0;
     for (int i = 0; i < SIDE * SIDE; i++) voids += isnan(block->heights_m[i]) != 0;
     block->has_voids = voids > 0;
@@ -154,27 +164,44 @@ static enum scree_status gather(struct raster_reader *reader, int64_t x, int64_t
     return SCREE_OK;
 }
 
+/* What interpolation has left void is enclosed by data on a larger scale, or lies outside of them. */
+static enum scree_status fill_rest(struct raster_reader *reader, struct block *block, struct scree_error *error) {
+    float *filled_m = block->filled_m, *enclosed_m = reader->region_m;
+    float outside_m = (float)reader->raster->options.nodata_height_m;
+    int rest = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) rest += isnan(filled_m[i]) != 0;
+    if (rest > 0 && reader->enclosed != NULL) {
+        enum scree_status status = raster_field_read(reader->enclosed, block->x * SIDE - SHIFT, block->y * SIDE - SHIFT,
+                                                     SIDE, SIDE, enclosed_m, error);
+        if (status != SCREE_OK) return status;
+        for (int i = 0; i < SIDE * SIDE; i++)
+            if (isnan(filled_m[i])) filled_m[i] = enclosed_m[i];
+    }
+    for (int i = 0; i < SIDE * SIDE && rest > 0; i++)
+        if (isnan(filled_m[i])) filled_m[i] = outside_m;
+    level_poles(reader, block, outside_m, filled_m);
+    return SCREE_OK;
+}
+
 /* Gathers the block with a margin and fills what lies inside of the data. */
 static enum scree_status fill(struct raster_reader *reader, struct block *block, struct scree_error *error) {
     int distance = reader->raster->fill_distance;
     int margin = distance + 1;
     int side = SIDE + 2 * margin;
-    float outside_m = (float)reader->raster->options.nodata_height_m;
-    int64_t x = block->x, y = block->y;
+    int64_t x = block->x * SIDE - SHIFT - margin, y = block->y * SIDE - SHIFT - margin;
     if (block->filled_m == NULL) block->filled_m = malloc(sizeof(float) * SIDE * SIDE);
     if (reader->region_m == NULL) reader->region_m = malloc(sizeof(float) * (size_t)side * (size_t)side);
     if (block->filled_m == NULL || reader->region_m == NULL)
         return scree_fail(error, SCREE_E_MEMORY, "no memory to fill voids");
-    enum scree_status status = gather(reader, x * SIDE - SHIFT - margin, y * SIDE - SHIFT - margin, side, side, false,
-                                      reader->region_m, side, error);
-    if (status == SCREE_OK)
-        status = raster_voids_fill(reader->region_m, side, side, margin, distance, outside_m, error);
+    enum scree_status status = gather(reader, x, y, side, side, false, reader->region_m, side, error);
+    if (status == SCREE_OK) status = raster_voids_fill(reader->region_m, side, side, margin, distance, error);
     if (status != SCREE_OK) return status;
     for (int row = 0; row < SIDE; row++)
         memcpy(block->filled_m + row * SIDE, reader->region_m + (size_t)(row + margin) * (size_t)side + margin,
                SIDE * sizeof(float));
-    block->is_filled = true;
-    return SCREE_OK;
+    status = fill_rest(reader, block, error);
+    block->is_filled = status == SCREE_OK;
+    return status;
 }
 
 static int64_t clamped(int64_t value, int64_t low, int64_t high) {

@@ -252,9 +252,9 @@ static enum scree_status check_height(const struct raster *raster, const struct 
         input->name, value, height_m, value);
 }
 
-static enum scree_status scan_window(const struct raster *raster, const struct raster_input *input,
-                                     GDALDatasetH dataset, const int window[4], float *heights_m,
-                                     struct raster_range *range, struct scree_error *error) {
+static enum scree_status scan_window(struct raster *raster, const struct raster_input *input, GDALDatasetH dataset,
+                                     const int window[4], float *heights_m, struct raster_range *range,
+                                     struct scree_error *error) {
     struct raster_trap trap;
     raster_trap_set(&trap);
     CPLErr failed = raster_input_read(input, dataset, window[0], window[1], window[2], window[3], heights_m);
@@ -268,6 +268,8 @@ static enum scree_status scan_window(const struct raster *raster, const struct r
         max_m = h > max_m ? h : max_m;
     }
     if (min_m > max_m) return SCREE_OK;
+    raster_enclosed_add(&raster->groups[input->group], input->group_column + window[0], input->group_row + window[1],
+                        window[2], window[3], heights_m);
     enum scree_status status = check_height(raster, input, min_m, error);
     if (status == SCREE_OK) status = check_height(raster, input, max_m, error);
     range->min_m = range->has_heights ? fmin(range->min_m, min_m) : min_m;
@@ -295,7 +297,7 @@ static bool is_empty(GDALRasterBandH band, int column, int row, int columns, int
     return coverage == GDAL_DATA_COVERAGE_STATUS_EMPTY;
 }
 
-enum scree_status raster_input_scan(const struct raster *raster, const struct raster_input *input, const int window[4],
+enum scree_status raster_input_scan(struct raster *raster, const struct raster_input *input, const int window[4],
                                     struct raster_range *range, struct scree_error *error) {
     enum scree_status status = SCREE_OK;
     float *heights_m = NULL;

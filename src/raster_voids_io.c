@@ -1,4 +1,4 @@
-/* Voids inside of the data are interpolated by GDALFillNodata, others take the height of the surroundings.
+/* Voids inside of the data are interpolated by GDALFillNodata.
  *
  * A void lies inside when its row or its column has heights on both sides of it that are no farther apart than the
  * fill distance. Both that rule and GDALFillNodata look no farther than the fill distance, so a margin of that
@@ -60,19 +60,17 @@ static GDALRasterBandH add_band(GDALDatasetH dataset, GDALDataType type, void *f
     return failed == CE_None ? GDALGetRasterBand(dataset, GDALGetRasterCount(dataset)) : NULL;
 }
 
-static CPLErr fill_box(float *filled_m, unsigned char *valid, int columns, struct box box, int distance) {
-    size_t first = (size_t)box.top * (size_t)columns + (size_t)box.left;
-    GDALDatasetH dataset = GDALCreate(GDALGetDriverByName("MEM"), "", box.right - box.left + 1,
-                                      box.bottom - box.top + 1, 0, GDT_Float32, NULL);
-    if (dataset == NULL) return CE_Failure;
-    GDALRasterBandH target = add_band(dataset, GDT_Float32, filled_m + first, (size_t)columns * sizeof *filled_m);
-    GDALRasterBandH mask = add_band(dataset, GDT_Byte, valid + first, (size_t)columns);
+bool raster_fill_nodata(float *heights_m, unsigned char *valid, int stride, int columns, int rows, int distance) {
+    GDALDatasetH dataset = GDALCreate(GDALGetDriverByName("MEM"), "", columns, rows, 0, GDT_Float32, NULL);
+    if (dataset == NULL) return false;
+    GDALRasterBandH target = add_band(dataset, GDT_Float32, heights_m, (size_t)stride * sizeof *heights_m);
+    GDALRasterBandH mask = add_band(dataset, GDT_Byte, valid, (size_t)stride);
     char **options = CSLSetNameValue(NULL, "TEMP_FILE_DRIVER", "MEM");
-    CPLErr failed = CE_Failure;
-    if (target != NULL && mask != NULL) failed = GDALFillNodata(target, mask, distance, 0, 0, options, NULL, NULL);
+    bool is_filled =
+        target != NULL && mask != NULL && GDALFillNodata(target, mask, distance, 0, 0, options, NULL, NULL) == CE_None;
     CSLDestroy(options);
     GDALClose(dataset);
-    return failed;
+    return is_filled;
 }
 
 static struct box grown(struct box box, int by, int columns, int rows) {
@@ -83,7 +81,7 @@ static struct box grown(struct box box, int by, int columns, int rows) {
     return box;
 }
 
-enum scree_status raster_voids_fill(float *region_m, int columns, int rows, int margin, int distance, float outside_m,
+enum scree_status raster_voids_fill(float *region_m, int columns, int rows, int margin, int distance,
                                     struct scree_error *error) {
     enum scree_status status = SCREE_OK;
     struct raster_trap trap;
@@ -112,7 +110,10 @@ enum scree_status raster_voids_fill(float *region_m, int columns, int rows, int 
         }
         memcpy(filled_m, region_m, count * sizeof *filled_m);
         for (size_t i = 0; i < count; i++) valid[i] = !isnan(region_m[i]);
-        if (fill_box(filled_m, valid, columns, grown(box, margin, columns, rows), distance) != CE_None) {
+        box = grown(box, margin, columns, rows);
+        size_t first = (size_t)box.top * (size_t)columns + (size_t)box.left;
+        if (!raster_fill_nodata(filled_m + first, valid + first, columns, box.right - box.left + 1,
+                                box.bottom - box.top + 1, distance)) {
             status = raster_trap_fail(&trap, "filling voids", error);
             goto cleanup;
         }
@@ -120,8 +121,7 @@ enum scree_status raster_voids_fill(float *region_m, int columns, int rows, int 
     for (int row = margin; row < rows - margin; row++)
         for (int column = margin; column < columns - margin; column++) {
             size_t i = (size_t)row * (size_t)columns + (size_t)column;
-            if (!isnan(region_m[i])) continue;
-            region_m[i] = marks[i] && !isnan(filled_m[i]) ? filled_m[i] : outside_m;
+            if (marks[i]) region_m[i] = filled_m[i];
         }
 cleanup:
     free(filled_m);
