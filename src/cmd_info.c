@@ -30,7 +30,7 @@ static void print_set(const struct terrain_set *set) {
     printf("%s: quantized-mesh terrain, %s profile, zooms %d to %d%s%s\n", set->folder, profile_name(set),
            layer->min_zoom, layer->max_zoom, layer->has_normals ? ", normals" : "", layer->is_gzipped ? ", gzip" : "");
     printf("bounds  %.9g %.9g %.9g %.9g\n", layer->bounds[0], layer->bounds[1], layer->bounds[2], layer->bounds[3]);
-    if (layer->datum[0] != '\0') printf("heights %s\n", layer->datum);
+    if (layer->datum[0] != '\0') printf("%s\n", layer->datum);
     if (layer->attribution[0] != '\0') printf("source  %s\n", layer->attribution);
     printf("\n  zoom      tiles    vertices   triangles        bytes  tolerance m  max error m        SVO m\n");
     for (int zoom = 0; zoom <= MAX_ZOOM; zoom++) {

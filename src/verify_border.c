@@ -77,8 +77,11 @@ struct border_difference tile_border_compare(const struct tile_border *one, cons
         double apart_m = fabs(height_at(one, &i_cursor, at) - height_at(other, &j_cursor, at));
         difference.largest_m = fmax(difference.largest_m, apart_m);
         difference.lone_vertices += take_one != take_other;
-        if (take_one && take_other && one->has_normals && other->has_normals)
-            difference.normals += memcmp(one->vertices[i].normal, other->vertices[j].normal, 2) != 0;
+        if (take_one && take_other && one->has_normals && other->has_normals &&
+            memcmp(one->vertices[i].normal, other->vertices[j].normal, 2) != 0) {
+            if (difference.normals == 0) difference.normal_at = at;
+            difference.normals++;
+        }
         i += take_one;
         j += take_other;
     }

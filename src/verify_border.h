@@ -21,7 +21,8 @@ struct tile_border {
 
 struct border_difference {
     uint32_t lone_vertices; /* on one side only */
-    uint32_t normals;       /* shared vertices whose normals differ */
+    uint32_t normals;       /* shared vertices whose normals differ, */
+    uint16_t normal_at;     /* and the code along the border of the first */
     double largest_m;       /* between the two heights along the border, linear from vertex to vertex */
 };
 

@@ -32,24 +32,24 @@ static void print_promises(const struct verify_report *report, bool quiet) {
 
 static void print_errors(const struct terrain_set *set, const struct against *against) {
     const struct layer_info *layer = &set->layer;
-    printf(
-        "\nVertical error against the source, metres, at every post of the finest lattice.\n"
-        "  height: as a client reads heights; drawn: flat triangles on the curved earth\n\n"
-        "  zoom      posts  tolerance |   height max       p99       RMS      mean |    drawn max       p99       RMS"
-        " | drawn max is at\n");
+    printf("\nVertical error against the source, metres, at every post of the finest lattice.\n"
+           "  height: as a client reads heights; drawn: flat triangles on the curved earth\n\n"
+           "                             |                 height                  |             drawn             |\n"
+           "  zoom       posts tolerance |       max       p99       RMS      mean |       max       p99       RMS |");
+    printf(" max is at\n");
     for (int zoom = 0; zoom <= MAX_ZOOM; zoom++) {
         const struct residuals *sums = &against->zooms[zoom];
         if (sums->posts == 0) continue;
-        printf("  %4d %10" PRIu64, zoom, sums->posts);
+        printf("  %4d %11" PRIu64, zoom, sums->posts);
         if (layer->zooms[zoom].is_told) {
-            printf(" %10.4g |", layer->zooms[zoom].tolerance_m);
+            printf(" %9.4g |", layer->zooms[zoom].tolerance_m);
         } else {
-            printf(" %10s |", "-");
+            printf(" %9s |", "-");
         }
-        printf(" %12.4f %9.4f %9.4f %9.4f |", sums->height.max_m,
+        printf(" %9.4g %9.4g %9.4g %9.3g |", sums->height.max_m,
                residual_quantile_m(&sums->height, sums->posts, QUANTILE), residual_rms_m(&sums->height, sums->posts),
                residual_mean_m(&sums->height, sums->posts));
-        printf(" %12.4f %9.4f %9.4f | %.7g, %.7g\n", sums->drawn.max_m,
+        printf(" %9.4g %9.4g %9.4g | %.8g, %.8g\n", sums->drawn.max_m,
                residual_quantile_m(&sums->drawn, sums->posts, QUANTILE), residual_rms_m(&sums->drawn, sums->posts),
                lattice_x(&layer->lattice, (double)sums->drawn.max_x),
                lattice_y(&layer->lattice, (double)sums->drawn.max_y));

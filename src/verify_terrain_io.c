@@ -63,8 +63,9 @@ static void meet(struct walk *walk, struct tile_id one_id, const struct tile_bor
         report_broken(report, PROMISE_NORMALS, "tiles " TILE " and " TILE ": only one of them has normals",
                       TILE_OF(one_id), TILE_OF(other_id));
     } else if (difference.normals != 0) {
-        report_broken(report, PROMISE_NORMALS, "tiles " TILE " and " TILE ": %" PRIu32 " shared vertices differ",
-                      TILE_OF(one_id), TILE_OF(other_id), difference.normals);
+        report_broken(report, PROMISE_NORMALS,
+                      "tiles " TILE " and " TILE ": %" PRIu32 " shared vertices differ, the first at %u",
+                      TILE_OF(one_id), TILE_OF(other_id), difference.normals, (unsigned)difference.normal_at);
     } else if (one->has_normals) {
         report_held(report, PROMISE_NORMALS);
     }

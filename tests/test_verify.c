@@ -221,6 +221,7 @@ static void borders_are_compared_as_lines(void) {
     struct border_difference difference = tile_border_compare(&one, &other), back = tile_border_compare(&other, &one);
     CU_ASSERT_EQUAL(difference.lone_vertices, 1);
     CU_ASSERT_EQUAL(difference.normals, 1);
+    CU_ASSERT_EQUAL(difference.normal_at, 32767);
     CU_ASSERT_DOUBLE_EQUAL(difference.largest_m, 3, 0.001);
     CU_ASSERT_EQUAL(back.largest_m, difference.largest_m);
     difference = tile_border_compare(&other, &other);
