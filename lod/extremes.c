@@ -1,8 +1,8 @@
 #include "lod/extremes.h"
 
 static inline void widen(struct sample *pair, struct sample sample) {
-    if (sample.drawn_m < pair[0].drawn_m) pair[0] = sample;
-    if (sample.drawn_m > pair[1].drawn_m) pair[1] = sample;
+    if (sample.height_m < pair[0].height_m) pair[0] = sample;
+    if (sample.height_m > pair[1].height_m) pair[1] = sample;
 }
 
 static inline int32_t least(int32_t a, int32_t b) {

@@ -1,8 +1,7 @@
 /* The lowest and the highest finest post of every cell, at their true positions: what a coarser tile is measured
  * against. Pure.
  *
- * Cells are closed: posts on their borders count for both sides. Two samples a cell, lowest first, with heights in
- * metres in the place of drawn heights. */
+ * Cells are closed: posts on their borders count for both sides. Two samples a cell, lowest first. */
 #ifndef SCREE_LOD_EXTREMES_H
 #define SCREE_LOD_EXTREMES_H
 

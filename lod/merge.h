@@ -6,7 +6,8 @@
 
 /* Children in the order south-west, south-east, north-west, north-east; NULL where the window ends before the child.
  * `child_span` is the side of a child in lattice steps. Vertices on common borders become one; they must be the same
- * on both sides (SCREE_E_CORRUPT). The mesh is connected; drawn heights and triangle errors are left to the caller. */
+ * on both sides (SCREE_E_CORRUPT). The mesh is connected; heights in metres and triangle errors are left to the caller.
+ */
 enum scree_status mesh_merge(struct scree_memory *memory, const struct scree_mesh *const children[4],
                              int32_t child_span, struct mesh *mesh, struct scree_error *error);
 

@@ -6,15 +6,17 @@ struct vector {
     double x, y, z;
 };
 
-static struct vector metric(const struct sample *at, const struct sample *origin, double east_m, double north_m) {
+static struct vector metric(const struct sample *at, const struct sample *origin, struct drop drop, double east_m,
+                            double north_m) {
     return (struct vector){(at->x - origin->x) * east_m, (at->y - origin->y) * north_m,
-                           (double)at->drawn_m - origin->drawn_m};
+                           sample_drawn_m(at, origin, drop)};
 }
 
 /* The least quadric error over the edges of a star, with the vertex at the origin: every plane passes through it. */
-static double least_error_m2(const struct star *star, const struct sample *at, double east_m, double north_m) {
+static double least_error_m2(const struct star *star, const struct sample *at, struct drop drop, double east_m,
+                             double north_m) {
     struct vector normals[MESH_MAX_DEGREE], ring[MESH_MAX_DEGREE + 1];
-    for (int32_t i = 0; i <= star->degree; i++) ring[i] = metric(&star->at[i], at, east_m, north_m);
+    for (int32_t i = 0; i <= star->degree; i++) ring[i] = metric(&star->at[i], at, drop, east_m, north_m);
     for (int32_t i = 0; i < star->degree; i++) {
         const struct vector *a = &ring[i], *b = &ring[i + 1];
         struct vector n = {a->y * b->z - a->z * b->y, a->z * b->x - a->x * b->z, a->x * b->y - a->y * b->x};
@@ -35,13 +37,14 @@ static double least_error_m2(const struct star *star, const struct sample *at, d
     return least_m2;
 }
 
-double quadric_mmqe_m2(const struct mesh *mesh, double east_m, double north_m) {
+double quadric_mmqe_m2(const struct mesh *mesh, const struct samples *samples, double east_m, double north_m) {
     struct star star;
     double sum_m2 = 0;
     int32_t count = 0;
     for (int32_t v = 0; v < mesh->vertex_count; v++) {
         if (mesh->vertices[v].edge == MESH_NONE || !mesh_star(mesh, v, &star)) continue;
-        sum_m2 += least_error_m2(&star, &mesh->vertices[v].at, east_m, north_m);
+        const struct sample *at = &mesh->vertices[v].at;
+        sum_m2 += least_error_m2(&star, at, samples_drop(samples, at->y), east_m, north_m);
         count++;
     }
     return count > 0 ? sum_m2 / count : 0;

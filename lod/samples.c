@@ -3,16 +3,28 @@
 #include <math.h>
 #include <stddef.h>
 
-/* The plane through a triangle, relative to corner a. */
+/* The plane through a triangle's drawn heights, relative to corner a. */
 struct plane {
     float height_m, gradient_x, gradient_y;
+    struct drop drop;
 };
 
-static struct plane plane_through(const struct sample *a, const struct sample *b, const struct sample *c) {
+struct drop samples_drop(const struct samples *samples, double y) {
+    if (samples->east_drop_m == NULL) return (struct drop){0, 0};
+    double row = y / samples->cell_span;
+    int32_t below = row < samples->rows ? (int32_t)row : samples->rows - 1;
+    const float *drop_m = samples->east_drop_m + below;
+    return (struct drop){(float)(drop_m[0] + (row - below) * (drop_m[1] - drop_m[0])), samples->north_drop_m};
+}
+
+static struct plane plane_through(const struct samples *samples, const struct sample *a, const struct sample *b,
+                                  const struct sample *c) {
+    struct drop drop = samples_drop(samples, ((double)a->y + b->y + c->y) / 3);
     double bx = b->x - a->x, by = b->y - a->y, cx = c->x - a->x, cy = c->y - a->y;
-    double bz = (double)b->drawn_m - a->drawn_m, cz = (double)c->drawn_m - a->drawn_m;
+    double bz = sample_drawn_m(b, a, drop), cz = sample_drawn_m(c, a, drop);
     double scale = 1.0 / (bx * cy - cx * by);
-    return (struct plane){a->drawn_m, (float)((bz * cy - cz * by) * scale), (float)((cz * bx - bz * cx) * scale)};
+    return (struct plane){a->height_m, (float)((bz * cy - cz * by) * scale), (float)((cz * bx - bz * cx) * scale),
+                          drop};
 }
 
 static inline void swap(const struct sample **p, const struct sample **q) {
@@ -32,9 +44,11 @@ static inline void scan_rows(const struct samples *samples, const struct plane *
     for (int32_t y = y_first; y <= y_last; y++) {
         int32_t x_first = (int32_t)(left + (1 - ROW_GUARD)), x_last = (int32_t)(right + ROW_GUARD);
         const float *row = samples->posts + (int64_t)y * samples->stride;
-        float base = plane->height_m + (float)(y - origin->y) * plane->gradient_y;
+        float dy = (float)(y - origin->y);
+        float base = plane->height_m + dy * (plane->gradient_y + dy * plane->drop.north_m);
         for (int32_t x = x_first; x <= x_last; x++) {
-            float distance = row[x] - (base + (float)(x - origin->x) * plane->gradient_x);
+            float dx = (float)(x - origin->x);
+            float distance = row[x] - (base + dx * (plane->gradient_x + dx * plane->drop.east_m));
             float size = fabsf(distance);
             max_m = size > max_m ? size : max_m;
             sum += distance * distance;
@@ -103,8 +117,9 @@ static void scan_cells(const struct sample *sample, const struct sample *end, co
     for (; sample < end; sample++) {
         if (sample_area2(a, b, sample) < 0 || sample_area2(b, c, sample) < 0 || sample_area2(c, a, sample) < 0)
             continue;
-        float distance = sample->drawn_m - (plane->height_m + (float)(sample->x - a->x) * plane->gradient_x +
-                                            (float)(sample->y - a->y) * plane->gradient_y);
+        float dx = (float)(sample->x - a->x), dy = (float)(sample->y - a->y);
+        float distance = sample->height_m - (plane->height_m + dx * (plane->gradient_x + dx * plane->drop.east_m) +
+                                             dy * (plane->gradient_y + dy * plane->drop.north_m));
         float size = fabsf(distance);
         error->max_m = size > error->max_m ? size : error->max_m;
         error->sum_squares_m2 += distance * distance;
@@ -137,7 +152,7 @@ static struct triangle_error over_extremes(const struct samples *samples, const 
 
 struct triangle_error samples_triangle_error(const struct samples *samples, const struct sample *a,
                                              const struct sample *b, const struct sample *c) {
-    struct plane plane = plane_through(a, b, c);
+    struct plane plane = plane_through(samples, a, b, c);
     struct triangle_error error = {0, 0};
     if (samples->posts == NULL)
         error = over_extremes(samples, &plane, a, b, c);

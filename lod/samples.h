@@ -4,8 +4,9 @@
  * the highest finest post inside it, at its true position, so that summits and valley floors are never sampled away
  * while memory stays that of one tile.
  *
- * Heights here are *drawn heights*: metres above a reference of the tile, less the drop of the ellipsoid below the
- * tile's tangent plane; on them, linear interpolation over a triangle is the flat triangle that a globe draws. */
+ * What is measured is what a globe draws: a triangle between three points of the ellipsoid is flat and lies below the
+ * curved surface between them. So heights are compared less the drop of the ellipsoid below the tangent plane at the
+ * triangle, about (east^2 + north^2) / 2R. */
 #ifndef SCREE_LOD_SAMPLES_H
 #define SCREE_LOD_SAMPLES_H
 
@@ -13,18 +14,21 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* A point of the lattice plane with its drawn height. */
+/* A point of the lattice plane with a height. */
 struct sample {
-    int32_t x, y; /* lattice steps from the tile's south-western corner */
-    float drawn_m;
+    int32_t x, y;   /* lattice steps from the tile's south-western corner */
+    float height_m; /* above a reference that the tile chooses */
 };
 
 struct samples {
     int32_t columns, rows; /* cells */
     int32_t cell_span;     /* lattice steps a cell */
-    const float *posts;    /* cells of 1 step: (rows + 1) rows of `stride` drawn heights; NULL: there are extremes */
+    const float *posts;    /* cells of 1 step: (rows + 1) rows of `stride` heights; NULL: there are extremes */
     int32_t stride;
     const struct sample *extremes; /* 2 a cell, lowest then highest, row by row; NULL: there are posts */
+    const float *east_drop_m; /* ellipsoid's drop at one step to the east, at the rows + 1 borders of rows of cells;
+                                 NULL: the Earth is flat */
+    float north_drop_m;       /* the same to the north */
     float rounding_steps; /* how far the drawn position of a vertex may be off its lattice position, in x and in y */
 };
 
@@ -32,6 +36,18 @@ struct triangle_error {
     float max_m;          /* largest vertical distance of a sample in the closed triangle, with the position rounding */
     float sum_squares_m2; /* of those distances */
 };
+
+/* How far the ellipsoid drops below the tangent plane at row `y`, over dx^2 and over dy^2. */
+struct drop {
+    float east_m, north_m;
+};
+struct drop samples_drop(const struct samples *samples, double y);
+
+/* The height of a point less the drop, both as seen from `origin`. */
+static inline float sample_drawn_m(const struct sample *at, const struct sample *origin, struct drop drop) {
+    float dx = (float)(at->x - origin->x), dy = (float)(at->y - origin->y);
+    return at->height_m - origin->height_m - drop.east_m * dx * dx - drop.north_m * dy * dy;
+}
 
 /* Measures the counter-clockwise triangle (a, b, c) of positive area. */
 struct triangle_error samples_triangle_error(const struct samples *samples, const struct sample *a,

@@ -59,11 +59,12 @@ struct star_planes {
     double slope_x[MESH_MAX_DEGREE], slope_y[MESH_MAX_DEGREE], area2[MESH_MAX_DEGREE];
 };
 
-static void planes_of_star(const struct star *star, const struct sample *at, struct star_planes *planes) {
+static void planes_of_star(const struct star *star, const struct sample *at, struct drop drop,
+                           struct star_planes *planes) {
     for (int32_t i = 0; i < star->degree; i++) {
         const struct sample *a = &star->at[i], *b = &star->at[i + 1];
-        double ax = a->x - at->x, ay = a->y - at->y, az = (double)a->drawn_m - at->drawn_m;
-        double bx = b->x - at->x, by = b->y - at->y, bz = (double)b->drawn_m - at->drawn_m;
+        double ax = a->x - at->x, ay = a->y - at->y, az = sample_drawn_m(a, at, drop);
+        double bx = b->x - at->x, by = b->y - at->y, bz = sample_drawn_m(b, at, drop);
         double area2 = ax * by - bx * ay, scale = 1 / area2;
         planes->slope_x[i] = (az * by - bz * ay) * scale;
         planes->slope_y[i] = (bz * ax - az * bx) * scale;
@@ -72,10 +73,10 @@ static void planes_of_star(const struct star *star, const struct sample *at, str
 }
 
 /* The quadric of the star's planes (vertical distances, weighted by area) at a neighbour. */
-static double quadric_cost(const struct star *star, const struct sample *at, const struct star_planes *planes,
-                           int32_t neighbour) {
+static double quadric_cost(const struct star *star, const struct sample *at, struct drop drop,
+                           const struct star_planes *planes, int32_t neighbour) {
     double x = star->at[neighbour].x - at->x, y = star->at[neighbour].y - at->y;
-    double z = (double)star->at[neighbour].drawn_m - at->drawn_m, cost = 0;
+    double z = sample_drawn_m(&star->at[neighbour], at, drop), cost = 0;
     for (int32_t i = 0; i < star->degree; i++) {
         double distance = z - planes->slope_x[i] * x - planes->slope_y[i] * y;
         cost += distance * distance * planes->area2[i];
@@ -89,9 +90,10 @@ static int propose(const struct simplifier *simplifier, const struct star *star,
     struct star_planes planes;
     double costs[CANDIDATES];
     int count = 0;
-    planes_of_star(star, at, &planes);
+    struct drop drop = samples_drop(&simplifier->samples, at->y);
+    planes_of_star(star, at, drop, &planes);
     for (int32_t k = 0; k < star->degree; k++) {
-        double cost = quadric_cost(star, at, &planes, k);
+        double cost = quadric_cost(star, at, drop, &planes, k);
         if (count == CANDIDATES && cost >= costs[count - 1]) continue;
         if (!stays_positive(&simplifier->options, star, k)) continue;
         int place = count < CANDIDATES ? count++ : CANDIDATES - 1;

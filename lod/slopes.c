@@ -17,10 +17,10 @@ void slope_grid_release(struct scree_memory *memory, struct slope_grid *grid) {
 }
 
 void slope_grid_from_posts(struct slope_grid *grid, const float *heights_m, int32_t stride, const double *east_m,
-                           double north_m) {
-    float by_north = (float)(0.5 / north_m);
+                           const double *north_m) {
     for (int32_t y = 0; y < grid->rows; y++) {
         float by_east = east_m[y] > LEAST_STEP_M ? (float)(0.5 / east_m[y]) : 0;
+        float by_north = (float)(0.5 / north_m[y]);
         const float *row = heights_m + (int64_t)y * stride;
         struct slope *nodes = grid->nodes + (int64_t)y * grid->columns;
         for (int32_t x = 0; x < grid->columns; x++)

@@ -23,9 +23,10 @@ enum scree_status slope_grid_allocate(struct scree_memory *memory, int32_t colum
                                       struct slope_grid *grid, struct scree_error *error);
 void slope_grid_release(struct scree_memory *memory, struct slope_grid *grid);
 
-/* Central differences. heights_m: post (0, 0) of rows of `stride` with a margin of one post; east_m: one a row. */
+/* Central differences. heights_m: post (0, 0) of rows of `stride` with a margin of one post; east_m, north_m: metres of
+ * a step, one a row. */
 void slope_grid_from_posts(struct slope_grid *grid, const float *heights_m, int32_t stride, const double *east_m,
-                           double north_m);
+                           const double *north_m);
 
 /* Fills the coarser grid, of every second node of the finer one. */
 void slope_grid_reduce(const struct slope_grid *fine, struct slope_grid *coarse);

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Rounding of a drawn height (24 bits) and of the sums that compare it with a plane, as a share of the tile's relief.
+/* Rounding of a height (24 bits) and of the sums that compare it with a plane, as a share of the tile's relief.
  */
 #define FLOAT_SLACK (1.0 / (1 << 21))
 
@@ -20,17 +20,8 @@ static int32_t height_units(const struct tile *tile, double height_m) {
     return (int32_t)lround(height_m / tile->geometry.height_unit_m);
 }
 
-static double drop_m(const struct tile_geometry *geometry, double x, double y) {
-    double dx = x - 0.5 * geometry->columns, dy = y - 0.5 * geometry->rows;
-    return geometry->drop_x_m * dx * dx + geometry->drop_y_m * dy * dy;
-}
-
-static float drawn_m(const struct tile *tile, double height_m, int32_t x, int32_t y) {
-    return (float)(height_m - tile->reference_m - drop_m(&tile->geometry, x, y));
-}
-
-/* Sets the drawn heights of the mesh from its heights, around a reference in the middle of them. */
-static void draw_vertices(struct tile *tile) {
+/* Sets the heights of the mesh's vertices, around a reference in the middle of them. */
+static void place_vertices(struct tile *tile) {
     struct mesh *mesh = &tile->mesh;
     int32_t lowest = mesh->heights[0], highest = lowest;
     for (int32_t v = 1; v < mesh->vertex_count; v++) {
@@ -39,12 +30,34 @@ static void draw_vertices(struct tile *tile) {
     }
     double unit_m = tile->geometry.height_unit_m;
     tile->reference_m = 0.5 * ((double)lowest + highest) * unit_m;
-    for (int32_t v = 0; v < mesh->vertex_count; v++) {
-        struct sample *at = &mesh->vertices[v].at;
-        at->drawn_m = drawn_m(tile, mesh->heights[v] * unit_m, at->x, at->y);
-    }
-    double relief_m = 0.5 * ((double)highest - lowest) * unit_m + drop_m(&tile->geometry, 0, 0);
-    tile->slack_m = (float)(relief_m * FLOAT_SLACK);
+    for (int32_t v = 0; v < mesh->vertex_count; v++)
+        mesh->vertices[v].at.height_m = (float)(mesh->heights[v] * unit_m - tile->reference_m);
+    double across = 0.5 * (tile->geometry.columns + (double)tile->geometry.rows);
+    double drop_m = tile->geometry.north_drop_m * across * across;
+    tile->slack_m = (float)((0.5 * ((double)highest - lowest) * unit_m + drop_m) * FLOAT_SLACK);
+}
+
+/* The beginning of every tile. */
+static enum scree_status start_tile(struct scree_memory *memory, const struct tile_geometry *geometry,
+                                    struct tile *tile, struct scree_error *error) {
+    memset(tile, 0, sizeof *tile);
+    tile->memory = memory;
+    tile->geometry = *geometry;
+    if (geometry->east_drop_m == NULL) return SCREE_OK;
+    size_t rows = (size_t)extremes_cells(geometry->rows, geometry->cell_span) + 1;
+    tile->east_drop_m = scree_allocate(memory, rows, sizeof *tile->east_drop_m, "a tile's rows", error);
+    if (tile->east_drop_m == NULL) return SCREE_E_MEMORY;
+    memcpy(tile->east_drop_m, geometry->east_drop_m, rows * sizeof *tile->east_drop_m);
+    return SCREE_OK;
+}
+
+static struct samples samples_of(const struct tile *tile) {
+    const struct tile_geometry *geometry = &tile->geometry;
+    return (struct samples){.columns = extremes_cells(geometry->columns, geometry->cell_span),
+                            .rows = extremes_cells(geometry->rows, geometry->cell_span),
+                            .cell_span = geometry->cell_span,
+                            .east_drop_m = tile->east_drop_m,
+                            .north_drop_m = geometry->north_drop_m};
 }
 
 /* ---- a tile of posts ---- */
@@ -116,12 +129,13 @@ static enum scree_status use_posts(struct tile *tile, const struct tile_posts *p
             double height_m = posts->heights_m[(int64_t)y * posts->stride + x];
             tile->mesh.heights[y * across + x] = height_units(tile, height_m);
         }
-    draw_vertices(tile);
+    place_vertices(tile);
     for (int32_t y = 0; y <= geometry->rows; y++)
         for (int32_t x = 0; x <= geometry->columns; x++)
-            tile->posts[y * across + x] = drawn_m(tile, posts->heights_m[(int64_t)y * posts->stride + x], x, y);
-    tile->samples = (struct samples){
-        .columns = geometry->columns, .rows = geometry->rows, .cell_span = 1, .posts = tile->posts, .stride = across};
+            tile->posts[y * across + x] = (float)(posts->heights_m[(int64_t)y * posts->stride + x] - tile->reference_m);
+    tile->samples = samples_of(tile);
+    tile->samples.posts = tile->posts;
+    tile->samples.stride = across;
     return SCREE_OK;
 }
 
@@ -130,9 +144,7 @@ enum scree_status tile_from_posts(struct scree_memory *memory, const struct tile
     enum scree_status status;
     const float *heights_m = posts->heights_m;
     const int64_t last_row = (int64_t)geometry->rows * posts->stride;
-    memset(tile, 0, sizeof *tile);
-    tile->memory = memory;
-    tile->geometry = *geometry;
+    if ((status = start_tile(memory, geometry, tile, error)) != SCREE_OK) return status;
     if ((status = make_grid(tile, 1, error)) != SCREE_OK) goto failed;
     if ((status = use_posts(tile, posts, error)) != SCREE_OK) goto failed;
     start_line(tile, SIDE_SOUTH, 1, heights_m, 1);
@@ -141,7 +153,7 @@ enum scree_status tile_from_posts(struct scree_memory *memory, const struct tile
     start_line(tile, SIDE_WEST, 1, heights_m, posts->stride);
     status = slope_grid_allocate(memory, geometry->columns + 1, geometry->rows + 1, 1, &tile->slopes, error);
     if (status != SCREE_OK) goto failed;
-    slope_grid_from_posts(&tile->slopes, heights_m, posts->stride, posts->east_m, geometry->north_m);
+    slope_grid_from_posts(&tile->slopes, heights_m, posts->stride, posts->east_m, posts->north_m);
     if ((status = start_rest(tile, error)) != SCREE_OK) goto failed;
     extremes_from_posts(heights_m, posts->stride, geometry->columns, geometry->rows, tile->rest->extremes);
     slope_grid_reduce(&tile->slopes, &tile->rest->slopes);
@@ -156,28 +168,24 @@ failed:
 
 static enum scree_status use_extremes(struct tile *tile, struct scree_error *error) {
     const struct tile_geometry *geometry = &tile->geometry;
-    int32_t columns = extremes_cells(geometry->columns, geometry->cell_span);
-    int32_t rows = extremes_cells(geometry->rows, geometry->cell_span);
-    tile->extremes =
-        scree_allocate(tile->memory, 2 * (size_t)columns * (size_t)rows, sizeof *tile->extremes, "extremes", error);
+    tile->samples = samples_of(tile);
+    tile->extremes = scree_allocate(tile->memory, 2 * (size_t)tile->samples.columns * (size_t)tile->samples.rows,
+                                    sizeof *tile->extremes, "extremes", error);
     if (tile->extremes == NULL) return SCREE_E_MEMORY;
-    tile->samples = (struct samples){
-        .columns = columns, .rows = rows, .cell_span = geometry->cell_span, .extremes = tile->extremes};
+    tile->samples.extremes = tile->extremes;
     return slope_grid_allocate(tile->memory, geometry->columns / geometry->cell_span + 1,
                                geometry->rows / geometry->cell_span + 1, geometry->cell_span, &tile->slopes, error);
 }
 
-/* The extremes hold heights until the parent's have been taken from them; then they become drawn heights. */
+/* The extremes hold heights until the parent's have been taken from them; then they are measured from the reference. */
 static enum scree_status finish_extremes(struct tile *tile, struct scree_error *error) {
     enum scree_status status = start_rest(tile, error);
     if (status != SCREE_OK) return status;
     extremes_reduce(tile->extremes, tile->samples.columns, tile->samples.rows, tile->rest->extremes);
     slope_grid_reduce(&tile->slopes, &tile->rest->slopes);
     int64_t count = 2 * (int64_t)tile->samples.columns * tile->samples.rows;
-    for (int64_t i = 0; i < count; i++) {
-        struct sample *sample = &tile->extremes[i];
-        sample->drawn_m = drawn_m(tile, sample->drawn_m, sample->x, sample->y);
-    }
+    for (int64_t i = 0; i < count; i++)
+        tile->extremes[i].height_m = (float)(tile->extremes[i].height_m - tile->reference_m);
     return SCREE_OK;
 }
 
@@ -224,9 +232,7 @@ enum scree_status tile_from_children(struct scree_memory *memory, const struct t
     int32_t child_span = children[0]->columns > children[0]->rows ? children[0]->columns : children[0]->rows;
     if (children[1] != NULL) child_span = children[0]->columns;
     if (children[2] != NULL) child_span = children[0]->rows;
-    memset(tile, 0, sizeof *tile);
-    tile->memory = memory;
-    tile->geometry = *geometry;
+    if ((status = start_tile(memory, geometry, tile, error)) != SCREE_OK) return status;
     for (int i = 0; i < 4; i++) meshes[i] = children[i] != NULL ? &children[i]->mesh : NULL;
     if ((status = mesh_merge(memory, meshes, child_span, &tile->mesh, error)) != SCREE_OK) goto failed;
     if ((status = border_is_closed(tile, error)) != SCREE_OK) goto failed;
@@ -239,7 +245,7 @@ enum scree_status tile_from_children(struct scree_memory *memory, const struct t
         slope_grid_place(&children[i]->slopes, x / span, y / span, &tile->slopes);
     }
     if ((status = join_lines(tile, children, child_span, error)) != SCREE_OK) goto failed;
-    draw_vertices(tile);
+    place_vertices(tile);
     if ((status = finish_extremes(tile, error)) != SCREE_OK) goto failed;
     mesh_measure(&tile->mesh, &tile->samples);
     if ((status = start_simplifier(tile, error)) != SCREE_OK) goto failed;
@@ -255,13 +261,11 @@ enum scree_status tile_from_level(struct scree_memory *memory, const struct tile
                                   double height_m, struct tile *tile, struct scree_error *error) {
     enum scree_status status;
     float height = (float)height_m;
-    memset(tile, 0, sizeof *tile);
-    tile->memory = memory;
-    tile->geometry = *geometry;
+    if ((status = start_tile(memory, geometry, tile, error)) != SCREE_OK) return status;
     if ((status = make_grid(tile, step, error)) != SCREE_OK) goto failed;
     for (int32_t v = 0; v < tile->mesh.vertex_count; v++) tile->mesh.heights[v] = height_units(tile, height_m);
     for (int side = 0; side < SIDE_COUNT; side++) start_line(tile, (enum tile_side)side, step, &height, 0);
-    draw_vertices(tile);
+    place_vertices(tile);
     if ((status = use_extremes(tile, error)) != SCREE_OK) goto failed;
     for (int32_t i = 0; i < 2 * tile->samples.columns * tile->samples.rows; i++) {
         int32_t cell = i / 2, span = geometry->cell_span; /* any post will do: the middle of the cell */
@@ -325,7 +329,7 @@ double tile_max_error_m(const struct tile *tile) {
 }
 
 double tile_mmqe_m2(const struct tile *tile) {
-    return quadric_mmqe_m2(&tile->mesh, tile->geometry.east_m, tile->geometry.north_m);
+    return quadric_mmqe_m2(&tile->mesh, &tile->samples, tile->geometry.east_m, tile->geometry.north_m);
 }
 
 enum scree_status tile_hand_up_new(struct tile *tile, struct coarse_tile **coarse, struct scree_error *error) {
@@ -345,6 +349,7 @@ void tile_release(struct tile *tile) {
     slope_grid_release(tile->memory, &tile->slopes);
     scree_release(tile->memory, tile->extremes);
     scree_release(tile->memory, tile->posts);
+    scree_release(tile->memory, tile->east_drop_m);
     mesh_release(tile->memory, &tile->mesh);
     memset(tile, 0, sizeof *tile);
 }

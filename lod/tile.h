@@ -15,8 +15,9 @@ struct tile_geometry {
     int32_t columns, rows; /* lattice steps that the tile covers */
     int32_t cell_span;     /* lattice steps of a cell: 1 at the finest zoom, doubling with each coarser one */
     double height_unit_m;
-    double east_m, north_m;         /* metres of a step, at the row where eastward steps are longest */
-    double drop_x_m, drop_y_m;      /* sagitta of the ellipsoid: drop = drop_x_m * dx^2 + drop_y_m * dy^2 */
+    double east_m, north_m;   /* metres of a step, at the row where eastward steps are longest */
+    const float *east_drop_m; /* see struct samples; copied; NULL: the Earth is flat */
+    float north_drop_m;
     double side_drop_m[SIDE_COUNT]; /* the same along each border line; equal for both tiles of a line */
     int64_t locked_step;            /* see simplify_options */
 };
@@ -29,10 +30,11 @@ struct tile {
     struct simplifier simplifier;
     struct border_line lines[SIDE_COUNT];
     struct slope_grid slopes; /* at the corners of the cells */
-    float *posts;             /* cell_span 1: drawn heights; else NULL */
-    struct sample *extremes;  /* cell_span > 1: drawn heights; else NULL */
-    double reference_m;       /* what drawn heights are measured from */
-    float slack_m;            /* what the rounding of drawn heights may add to an error */
+    float *east_drop_m;
+    float *posts;             /* cell_span 1: heights above the reference; else NULL */
+    struct sample *extremes;  /* cell_span > 1: heights above the reference; else NULL */
+    double reference_m;       /* what heights are measured from */
+    float slack_m;            /* what the rounding of heights may add to an error */
     struct coarse_tile *rest; /* what will be handed up, but for the mesh and the lines */
 };
 
@@ -52,7 +54,7 @@ struct coarse_tile {
 struct tile_posts {
     const float *heights_m; /* of post (0, 0); rows of `stride` floats, from the south; posts -1 .. columns + 1 exist */
     int32_t stride;
-    const double *east_m; /* metres of a step to the east at row y, for the slopes: rows + 1 of them */
+    const double *east_m, *north_m; /* metres of a step at row y, for the slopes: rows + 1 of them */
 };
 
 /* geometry->cell_span must be 1. */

@@ -152,11 +152,3 @@ double lattice_meridian_drop_m(const struct lattice *lattice) {
     double radians = lattice->spacing_y * (acos(-1.0) / 180);
     return radians * radians * MEAN_RADIUS_M / 2;
 }
-
-void lattice_tile_drop(const struct lattice *lattice, struct tile_id tile, double *east_drop_m, double *north_drop_m) {
-    struct lattice_window window = lattice_tile_window(lattice, tile);
-    double equator = (double)(lattice->rows - 1) / 2, low = (double)window.y, high = low + window.rows;
-    double nearest = equator < low ? low : equator > high ? high : equator;
-    *east_drop_m = lattice_parallel_drop_m(lattice, nearest);
-    *north_drop_m = lattice_meridian_drop_m(lattice);
-}

@@ -74,11 +74,8 @@ double lattice_y(const struct lattice *lattice, double y);
 void lattice_steps_m(const struct lattice *lattice, double y, double *east_m, double *north_m);
 
 /* How far the ellipsoid falls below the flat triangles of a globe: a chord that passes a post at `before` and `after`
- * steps from its ends lies drop * before * after metres below the surface there. For steps to the east and to the
- * north in a tile, at its row of longest eastward steps; 0 in the local profile. The Earth's mean radius is used. */
-void lattice_tile_drop(const struct lattice *lattice, struct tile_id tile, double *east_drop_m, double *north_drop_m);
-
-/* The same along a parallel (row `y`) and along any meridian: alike for both tiles that share the line. */
+ * steps from its ends lies drop * before * after metres below the surface there. Along the parallel of row `y` and
+ * along any meridian; 0 in the local profile. The Earth's mean radius is used. */
 double lattice_parallel_drop_m(const struct lattice *lattice, double y);
 double lattice_meridian_drop_m(const struct lattice *lattice);
 

@@ -5,7 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-#define EARTH_RADIUS_M 6371008.8
 #define MANTISSA_REST  (52 - 6) /* bits of a double's mantissa that a bin does not look at: 2^6 bins an octave */
 #define FIRST_BIN      ((1023 - 24) << 6) /* everything below 2^-24 m is in the first bin */
 
@@ -132,14 +131,10 @@ static void scan_triangle(const struct scan *scan, const struct corner corners[3
     if (last > block_y + block->rows - 1) last = block_y + block->rows - 1;
     if (first > last) return;
 
-    double east_m, north_m, factor_x = 0, factor_y = 0;
     double centre_x = (corners[0].x + corners[1].x + corners[2].x) / 3;
     double centre_y = (corners[0].y + corners[1].y + corners[2].y) / 3;
-    if (scan->lattice->profile == PROFILE_GEODETIC) {
-        lattice_steps_m(scan->lattice, (double)scan->tile_y + centre_y, &east_m, &north_m);
-        factor_x = east_m * east_m / (2 * EARTH_RADIUS_M);
-        factor_y = north_m * north_m / (2 * EARTH_RADIUS_M);
-    }
+    double factor_x = lattice_parallel_drop_m(scan->lattice, (double)scan->tile_y + centre_y);
+    double factor_y = lattice_meridian_drop_m(scan->lattice);
     double heights[3], lifted[3];
     for (int k = 0; k < 3; k++) {
         double x = corners[k].x - centre_x, y = corners[k].y - centre_y;

@@ -10,7 +10,8 @@
 
 #define MARGIN 1 /* posts around a tile, for slopes on its border */
 
-static struct tile_geometry geometry_of(const struct tile_plan *plan, struct tile_id id) {
+static struct tile_geometry geometry_of(const struct tile_plan *plan, struct tile_id id,
+                                        float east_drop_m[TILE_CELLS + 1]) {
     const struct lattice *lattice = plan->lattice;
     struct lattice_window window = lattice_tile_window(lattice, id);
     struct tile_geometry geometry = {.columns = window.columns,
@@ -21,7 +22,10 @@ static struct tile_geometry geometry_of(const struct tile_plan *plan, struct til
     lattice_steps_m(lattice, (double)window.y, &south_m, &geometry.north_m);
     lattice_steps_m(lattice, top, &north_m, &geometry.north_m);
     geometry.east_m = fmax(south_m, north_m);
-    lattice_tile_drop(lattice, id, &geometry.drop_x_m, &geometry.drop_y_m);
+    for (int32_t row = 0; row * geometry.cell_span < window.rows + geometry.cell_span; row++)
+        east_drop_m[row] = (float)lattice_parallel_drop_m(lattice, (double)window.y + (double)row * geometry.cell_span);
+    geometry.east_drop_m = lattice->profile == PROFILE_GEODETIC ? east_drop_m : NULL;
+    geometry.north_drop_m = (float)lattice_meridian_drop_m(lattice);
     geometry.side_drop_m[SIDE_SOUTH] = lattice_parallel_drop_m(lattice, (double)window.y);
     geometry.side_drop_m[SIDE_NORTH] = lattice_parallel_drop_m(lattice, top);
     geometry.side_drop_m[SIDE_EAST] = geometry.side_drop_m[SIDE_WEST] = lattice_meridian_drop_m(lattice);
@@ -46,23 +50,21 @@ static enum scree_status advance_to(const struct tile_plan *plan, struct tile_id
 enum scree_status tile_build_finest(const struct tile_plan *plan, struct tile_id id, struct raster_reader *reader,
                                     struct scree_memory *memory, struct tile *tile, struct scree_error *error) {
     struct lattice_window window = lattice_tile_window(plan->lattice, id);
-    struct tile_geometry geometry = geometry_of(plan, id);
+    float east_drop_m[TILE_CELLS + 1];
+    struct tile_geometry geometry = geometry_of(plan, id, east_drop_m);
     int32_t columns = window.columns + 1 + 2 * MARGIN, rows = window.rows + 1 + 2 * MARGIN;
     enum scree_status status = SCREE_E_MEMORY;
     float *heights_m = scree_allocate(memory, (size_t)columns * (size_t)rows, sizeof *heights_m, "posts", error);
-    double *east_m = scree_allocate(memory, (size_t)window.rows + 1, sizeof *east_m, "row lengths", error);
-    if (heights_m == NULL || east_m == NULL) goto cleanup;
+    double east_m[TILE_CELLS + 1], north_m[TILE_CELLS + 1];
+    if (heights_m == NULL) goto cleanup;
     status = raster_read(reader, window.x - MARGIN, window.y - MARGIN, columns, rows, heights_m, columns, error);
     if (status != SCREE_OK) goto cleanup;
-    for (int32_t y = 0; y <= window.rows; y++) {
-        double north_m;
-        lattice_steps_m(plan->lattice, (double)(window.y + y), &east_m[y], &north_m);
-    }
-    struct tile_posts posts = {heights_m + MARGIN * columns + MARGIN, columns, east_m};
+    for (int32_t y = 0; y <= window.rows; y++)
+        lattice_steps_m(plan->lattice, (double)(window.y + y), &east_m[y], &north_m[y]);
+    struct tile_posts posts = {heights_m + MARGIN * columns + MARGIN, columns, east_m, north_m};
     status = tile_from_posts(memory, &geometry, &posts, tile, error);
     if (status == SCREE_OK) status = advance_to(plan, id, id.zoom, tile, error);
 cleanup:
-    scree_release(memory, east_m);
     scree_release(memory, heights_m);
     return status;
 }
@@ -71,7 +73,7 @@ cleanup:
  * bear: two halvings finer than they will keep. */
 static int32_t level_step(const struct tile_plan *plan, struct tile_id id, const struct tile_geometry *geometry) {
     double tolerance_m = plan->ladder->tolerance_m[id.zoom];
-    double drop_m = fmax(geometry->drop_x_m, geometry->drop_y_m);
+    double drop_m = geometry->north_drop_m; /* eastward steps are no longer */
     int64_t step = lattice_tile_span(plan->lattice, id.zoom) / 4;
     while (step > geometry->cell_span && drop_m * 0.25 * (double)step * (double)step > tolerance_m * BORDER_SHARE / 16)
         step /= 2;
@@ -81,7 +83,8 @@ static int32_t level_step(const struct tile_plan *plan, struct tile_id id, const
 
 enum scree_status tile_build_level(const struct tile_plan *plan, struct tile_id id, struct scree_memory *memory,
                                    struct tile *tile, struct scree_error *error) {
-    struct tile_geometry geometry = geometry_of(plan, id);
+    float east_drop_m[TILE_CELLS + 1];
+    struct tile_geometry geometry = geometry_of(plan, id, east_drop_m);
     int32_t step = level_step(plan, id, &geometry);
     enum scree_status status = tile_from_level(memory, &geometry, step, plan->nodata_height_m, tile, error);
     return status == SCREE_OK ? advance_to(plan, id, id.zoom, tile, error) : status;
@@ -90,7 +93,8 @@ enum scree_status tile_build_level(const struct tile_plan *plan, struct tile_id 
 enum scree_status tile_build_parent(const struct tile_plan *plan, struct tile_id id,
                                     const struct coarse_tile *const children[4], struct scree_memory *memory,
                                     struct tile *tile, struct scree_error *error) {
-    struct tile_geometry geometry = geometry_of(plan, id);
+    float east_drop_m[TILE_CELLS + 1];
+    struct tile_geometry geometry = geometry_of(plan, id, east_drop_m);
     return tile_from_children(memory, &geometry, children, tile, error);
 }
 
