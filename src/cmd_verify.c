@@ -6,6 +6,7 @@
 #include "src/verify_print_io.h"
 #include "src/verify_terrain_io.h"
 
+#include <cpl_conv.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +20,8 @@ static const char help[] =
     "  --against DEM...     measure every zoom against the rasters that the terrain was built from\n"
     "  --format json        for machines\n"
     "  -q                   print nothing but broken promises\n\n"
-    "With --against, as they were given to scree build:\n" RASTER_ARGUMENTS_HELP;
+    "With --against, as they were given to scree build:\n"
+    "  --config KEY VALUE   a GDAL configuration option\n" RASTER_ARGUMENTS_HELP;
 
 struct arguments {
     const char *path;
@@ -56,6 +58,11 @@ static int parse(int argc, char **argv, struct arguments *arguments) {
             if (strcmp(argv[at], "json") != 0 && strcmp(argv[at], "text") != 0)
                 return usage("--format wants text or json, not ", argv[at]);
             arguments->as_json = strcmp(argv[at++], "json") == 0;
+            in_inputs = false;
+        } else if (strcmp(argument, "--config") == 0) {
+            if (argc - at < 2) return usage("--config wants a name and a value", "");
+            CPLSetConfigOption(argv[at], argv[at + 1]);
+            at += 2;
             in_inputs = false;
         } else if (argument[0] == '-' && argument[1] != '\0') {
             return usage("there is no option ", argument);
