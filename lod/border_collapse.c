@@ -17,14 +17,14 @@ static float fan_error_m(const struct simplifier *simplifier, const struct star 
     int32_t first = target == 0 ? 1 : 0;
     for (int32_t i = first; i < first + star->degree - 1; i++) {
         const struct sample *a = &star->at[target], *b = &star->at[i], *c = &star->at[i + 1];
-        if (!simplify_positive(&simplifier->options, a, b, c)) return INFINITY;
+        if (sample_area2(a, b, c) <= 0) return INFINITY;
         largest_m = fmaxf(largest_m, samples_triangle_error(&simplifier->samples, a, b, c).max_m);
     }
     return largest_m;
 }
 
 /* Triangulations of the polygon ring[0] ... ring[degree] by least error: apex[i][j] is the third corner of the
- * triangle on the chord from ring[i] to ring[j]. Stars of border vertices are small; larger ones are cut off. */
+ * triangle on the chord from ring[i] to ring[j]. Larger stars lose ears first. */
 #define POLYGON_MAX 40
 struct polygon {
     float error_m[POLYGON_MAX][POLYGON_MAX];
@@ -105,11 +105,32 @@ static void retriangulate(struct simplifier *simplifier, const struct star *star
     collapse_along(simplifier, &narrow, 0);
 }
 
+/* Flips the edge to the convex corner of the ring that costs the least error; false when there is none. */
+static bool cut_ear(struct simplifier *simplifier, struct star *star) {
+    float least_m = INFINITY;
+    int32_t ear = MESH_NONE;
+    for (int32_t i = 1; i < star->degree; i++) {
+        const struct sample *a = &star->at[i - 1], *b = &star->at[i], *c = &star->at[i + 1];
+        const struct sample *at = &simplifier->mesh->vertices[star->vertex].at;
+        if (sample_area2(a, b, c) <= 0 || sample_area2(at, a, c) <= 0) continue;
+        float error_m = samples_triangle_error(&simplifier->samples, a, b, c).max_m;
+        if (error_m >= least_m) continue;
+        least_m = error_m;
+        ear = i;
+    }
+    if (ear == MESH_NONE) return false;
+    simplifier_star_changed(simplifier, star);
+    flip(simplifier, star->edge[ear]);
+    measure_around(simplifier, star);
+    return mesh_star(simplifier->mesh, star->vertex, star);
+}
+
 /* False when the vertex has to wait. */
 static bool remove_vertex(struct simplifier *simplifier, int32_t vertex, float tolerance_m, int32_t degree_limit) {
     struct star star;
     struct polygon polygon;
     if (!mesh_star(simplifier->mesh, vertex, &star)) return false;
+    while (degree_limit == MESH_MAX_DEGREE && star.degree >= POLYGON_MAX && cut_ear(simplifier, &star)) continue;
     float error_m[2];
     for (int end = 0; end < 2; end++) {
         int32_t target = end == 0 ? 0 : star.degree;

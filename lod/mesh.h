@@ -12,7 +12,7 @@
 #include <scree/mesh.h>
 
 #define MESH_NONE       (-1)
-#define MESH_MAX_DEGREE 128 /* stars with more triangles are left alone */
+#define MESH_MAX_DEGREE 1024 /* stars with more triangles are left alone: fans along a cliff are the largest */
 
 struct mesh_vertex {
     struct sample at;

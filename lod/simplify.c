@@ -254,26 +254,34 @@ static bool collapse_corner(struct simplifier *simplifier, const struct mesh_tri
     return false;
 }
 
+/* The same without a look at the codes of the triangles that it makes: they come next. */
+static bool collapse_corner_anyhow(struct simplifier *simplifier, const struct mesh_triangle *triangle) {
+    int64_t span = simplifier->options.codes.span;
+    simplifier->options.codes.span = 0;
+    bool done = collapse_corner(simplifier, triangle);
+    simplifier->options.codes.span = span;
+    return done;
+}
+
 int32_t simplify_for_codes(struct simplifier *simplifier) {
-    int32_t left = 0;
-    bool progress = simplifier->options.codes.span > POSITION_TOP;
+    if (simplifier->options.codes.span <= POSITION_TOP) return 0;
     float tolerance_m = simplifier->tolerance_m;
+    int32_t bad = 1, stuck;
     simplifier->tolerance_m = INFINITY;
     queue_reset(&simplifier->queue, 1);
-    while (progress) {
-        progress = false;
-        left = 0;
+    for (bool anyhow = false; bad > 0; anyhow = stuck == bad) {
+        bad = stuck = 0;
         for (int32_t t = 0; t < simplifier->mesh->triangle_count; t++) {
             const struct mesh_triangle *triangle = &simplifier->mesh->triangles[t];
             if (triangle->vertex[0] == MESH_NONE || positive_in_codes(simplifier, triangle)) continue;
-            if (collapse_corner(simplifier, triangle))
-                progress = true;
-            else
-                left++;
+            bad++;
+            if (collapse_corner(simplifier, triangle)) continue;
+            if (!anyhow || !collapse_corner_anyhow(simplifier, triangle)) stuck++;
         }
+        if (anyhow && stuck == bad) break;
     }
     simplifier->tolerance_m = tolerance_m;
-    return left;
+    return bad;
 }
 
 enum scree_status simplifier_start(struct scree_memory *memory, struct mesh *mesh, const struct samples *samples,
