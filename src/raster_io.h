@@ -21,13 +21,14 @@ struct raster_options {
     bool any_height;        /* let heights beyond 20 km pass */
     bool has_extent;
     double extent[4];  /* west, south, east, north in degrees or CRS units: crop */
-    int fill_distance; /* how far voids are interpolated, in posts; 0: the default of 100; negative: never */
+    int fill_distance; /* how far voids are interpolated from their borders, in posts; 0: the default of 100; negative:
+                        * no void is filled */
 };
 
 struct raster_summary {
-    double bounds[4];      /* of the posts' centres: west, south, east, north in degrees or CRS units; in the geodetic
-                              profile      east may exceed 180 where the data cross the antimeridian */
-    int64_t columns, rows; /* local profile: the raster's pixels */
+    double bounds[4]; /* west, south, east, north. Geodetic: of the pixels' outer edges, in degrees; east exceeds 180
+                       * where the data cross the antimeridian. Local: of the posts, in CRS units. Cropped to --te. */
+    int64_t columns, rows;             /* local profile: the raster's pixels */
     double spacing_x, spacing_y;       /* finest resolution of any input, degrees or CRS units */
     double metres_per_unit;            /* local profile: horizontal unit */
     double height_min_m, height_max_m; /* over all valid posts, after scale, offset, units and vertical datum */
@@ -61,9 +62,12 @@ void raster_reader_free(struct raster_reader *reader);
 
 /* Heights in metres of `columns` x `rows` posts from post (x, y), row by row from the south, west to east; `stride`
  * floats from row to row. Any window is allowed: it may leave the lattice (columns wrap around the globe in the
- * geodetic profile, rows and local columns beyond the border repeat the border), because slopes need a margin. Voids
- * within the data's footprint are interpolated, and the result for a post does not depend on the window that it was
- * asked in. Outside of the footprint: nodata_height_m. */
+ * geodetic profile, rows and local columns beyond the border repeat the border), because slopes need a margin. The
+ * result for a post does not depend on the window that it was asked in, nor on the reader. A pole's row has one height.
+ *
+ * Voids whose row or column has heights on both sides, no farther apart than fill_distance, are interpolated by
+ * GDALFillNodata; wider ones that the data enclose take a height interpolated on a coarse grid (about 256 cells along
+ * the longer side of a group of inputs). All else lies outside of the footprint: nodata_height_m. */
 enum scree_status raster_read(struct raster_reader *reader, int64_t x, int64_t y, int32_t columns, int32_t rows,
                               float *heights_m, int32_t stride, struct scree_error *error);
 

@@ -16,8 +16,7 @@ enum {
 struct block {
     int64_t x, y; /* in blocks */
     uint64_t used;
-    bool has_voids, is_void; /* some, all */
-    bool is_filled;
+    bool has_voids, is_filled;
     float *heights_m; /* NaN for void */
     float *filled_m;  /* only if it has voids and was asked for */
 };
@@ -84,10 +83,16 @@ static enum scree_status load(struct raster_reader *reader, struct block *block,
                                                  SIDE, block->heights_m, error);
     if (status != SCREE_OK) return status;
     level_poles(reader, block, NAN, block->heights_m);
+    /* Voids count inside of the lattice only: nobody asks for what lies beyond. */
+    const struct lattice *lattice = &reader->raster->placement.lattice;
+    int64_t columns = lattice->columns + SHIFT - block->x * SIDE, rows = lattice->rows + SHIFT - block->y * SIDE;
+    if (lattice->profile == PROFILE_GEODETIC || columns > SIDE) columns = SIDE;
+    if (rows > SIDE) rows = SIDE;
     int voids = 0;
-    for (int i = 0; i < SIDE * SIDE; i++) voids += isnan(block->heights_m[i]) != 0;
+    for (int row = block->y == 0 ? SHIFT : 0; row < rows; row++)
+        for (int column = lattice->profile == PROFILE_LOCAL && block->x == 0 ? SHIFT : 0; column < columns; column++)
+            voids += isnan(block->heights_m[row * SIDE + column]) != 0;
     block->has_voids = voids > 0;
-    block->is_void = voids == SIDE * SIDE;
     block->is_filled = false;
     return SCREE_OK;
 }
