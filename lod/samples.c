@@ -3,9 +3,14 @@
 #include <math.h>
 #include <stddef.h>
 
+/* struct triangle_error while it is summed up. */
+struct sums {
+    double max_m, sum_squares_m2;
+};
+
 /* The plane through a triangle's drawn heights, relative to corner a. */
 struct plane {
-    float height_m, gradient_x, gradient_y;
+    double height_m, gradient_x, gradient_y;
     struct drop drop;
 };
 
@@ -14,7 +19,7 @@ struct drop samples_drop(const struct samples *samples, double y) {
     double row = y / samples->cell_span;
     int32_t below = row < samples->rows ? (int32_t)row : samples->rows - 1;
     const float *drop_m = samples->east_drop_m + below;
-    return (struct drop){(float)(drop_m[0] + (row - below) * (drop_m[1] - drop_m[0])), samples->north_drop_m};
+    return (struct drop){drop_m[0] + (row - below) * (drop_m[1] - drop_m[0]), samples->north_drop_m};
 }
 
 static struct plane plane_through(const struct samples *samples, const struct sample *a, const struct sample *b,
@@ -23,8 +28,7 @@ static struct plane plane_through(const struct samples *samples, const struct sa
     double bx = b->x - a->x, by = b->y - a->y, cx = c->x - a->x, cy = c->y - a->y;
     double bz = sample_drawn_m(b, a, drop), cz = sample_drawn_m(c, a, drop);
     double scale = 1.0 / (bx * cy - cx * by);
-    return (struct plane){a->height_m, (float)((bz * cy - cz * by) * scale), (float)((cz * bx - bz * cx) * scale),
-                          drop};
+    return (struct plane){a->height_m, (bz * cy - cz * by) * scale, (cz * bx - bz * cx) * scale, drop};
 }
 
 static inline void swap(const struct sample **p, const struct sample **q) {
@@ -39,17 +43,17 @@ static inline void swap(const struct sample **p, const struct sample **q) {
 
 static inline void scan_rows(const struct samples *samples, const struct plane *plane, const struct sample *origin,
                              int32_t y_first, int32_t y_last, double left, double left_step, double right,
-                             double right_step, struct triangle_error *error) {
-    float max_m = error->max_m, sum = error->sum_squares_m2;
+                             double right_step, struct sums *error) {
+    double max_m = error->max_m, sum = error->sum_squares_m2;
     for (int32_t y = y_first; y <= y_last; y++) {
         int32_t x_first = (int32_t)(left + (1 - ROW_GUARD)), x_last = (int32_t)(right + ROW_GUARD);
         const float *row = samples->posts + (int64_t)y * samples->stride;
-        float dy = (float)(y - origin->y);
-        float base = plane->height_m + dy * (plane->gradient_y + dy * plane->drop.north_m);
+        double dy = y - origin->y;
+        double base = plane->height_m + dy * (plane->gradient_y + dy * plane->drop.north_m);
         for (int32_t x = x_first; x <= x_last; x++) {
-            float dx = (float)(x - origin->x);
-            float distance = row[x] - (base + dx * (plane->gradient_x + dx * plane->drop.east_m));
-            float size = fabsf(distance);
+            double dx = x - origin->x;
+            double distance = row[x] - (base + dx * (plane->gradient_x + dx * plane->drop.east_m));
+            double size = fabs(distance);
             max_m = size > max_m ? size : max_m;
             sum += distance * distance;
         }
@@ -60,10 +64,10 @@ static inline void scan_rows(const struct samples *samples, const struct plane *
     error->sum_squares_m2 = sum;
 }
 
-static struct triangle_error over_posts(const struct samples *samples, const struct plane *plane,
-                                        const struct sample *a, const struct sample *b, const struct sample *c) {
+static struct sums over_posts(const struct samples *samples, const struct plane *plane, const struct sample *a,
+                              const struct sample *b, const struct sample *c) {
     const struct sample *origin = a;
-    struct triangle_error error = {0, 0};
+    struct sums error = {0, 0};
     if (b->y < a->y) swap(&a, &b);
     if (c->y < a->y) swap(&a, &c);
     if (c->y < b->y) swap(&b, &c);
@@ -112,24 +116,24 @@ static inline int32_t clamp_cell(double position, int32_t span, int32_t cells) {
 
 /* Extremes of one row of cells that lie in the triangle: exact, by whole numbers. */
 static void scan_cells(const struct sample *sample, const struct sample *end, const struct plane *plane,
-                       const struct sample *const corner[3], struct triangle_error *error) {
+                       const struct sample *const corner[3], struct sums *error) {
     const struct sample *a = corner[0], *b = corner[1], *c = corner[2];
     for (; sample < end; sample++) {
         if (sample_area2(a, b, sample) < 0 || sample_area2(b, c, sample) < 0 || sample_area2(c, a, sample) < 0)
             continue;
-        float dx = (float)(sample->x - a->x), dy = (float)(sample->y - a->y);
-        float distance = sample->height_m - (plane->height_m + dx * (plane->gradient_x + dx * plane->drop.east_m) +
-                                             dy * (plane->gradient_y + dy * plane->drop.north_m));
-        float size = fabsf(distance);
+        double dx = sample->x - a->x, dy = sample->y - a->y;
+        double distance = sample->height_m - (plane->height_m + dx * (plane->gradient_x + dx * plane->drop.east_m) +
+                                              dy * (plane->gradient_y + dy * plane->drop.north_m));
+        double size = fabs(distance);
         error->max_m = size > error->max_m ? size : error->max_m;
         error->sum_squares_m2 += distance * distance;
     }
 }
 
-static struct triangle_error over_extremes(const struct samples *samples, const struct plane *plane,
-                                           const struct sample *a, const struct sample *b, const struct sample *c) {
+static struct sums over_extremes(const struct samples *samples, const struct plane *plane, const struct sample *a,
+                                 const struct sample *b, const struct sample *c) {
     const struct sample *const corner[3] = {a, b, c};
-    struct triangle_error error = {0, 0};
+    struct sums error = {0, 0};
     int32_t span = samples->cell_span;
     int32_t y_least = a->y, y_largest = a->y;
     for (int i = 1; i < 3; i++) {
@@ -153,11 +157,11 @@ static struct triangle_error over_extremes(const struct samples *samples, const 
 struct triangle_error samples_triangle_error(const struct samples *samples, const struct sample *a,
                                              const struct sample *b, const struct sample *c) {
     struct plane plane = plane_through(samples, a, b, c);
-    struct triangle_error error = {0, 0};
+    struct sums error = {0, 0};
     if (samples->posts == NULL)
         error = over_extremes(samples, &plane, a, b, c);
     else if (sample_area2(a, b, c) > 1) /* by Pick's theorem, a triangle of area 1/2 holds no post but its corners */
         error = over_posts(samples, &plane, a, b, c);
-    error.max_m += samples->rounding_steps * (fabsf(plane.gradient_x) + fabsf(plane.gradient_y));
-    return error;
+    error.max_m += samples->rounding_steps * (fabs(plane.gradient_x) + fabs(plane.gradient_y));
+    return (struct triangle_error){(float)error.max_m, (float)error.sum_squares_m2};
 }

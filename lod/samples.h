@@ -16,8 +16,8 @@
 
 /* A point of the lattice plane with a height. */
 struct sample {
-    int32_t x, y;   /* lattice steps from the tile's south-western corner */
-    float height_m; /* above a reference that the tile chooses */
+    int32_t x, y; /* lattice steps from the tile's south-western corner */
+    float height_m;
 };
 
 struct samples {
@@ -39,17 +39,18 @@ struct triangle_error {
 
 /* How far the ellipsoid drops below the tangent plane at row `y`, over dx^2 and over dy^2. */
 struct drop {
-    float east_m, north_m;
+    double east_m, north_m;
 };
 struct drop samples_drop(const struct samples *samples, double y);
 
 /* The height of a point less the drop, both as seen from `origin`. */
-static inline float sample_drawn_m(const struct sample *at, const struct sample *origin, struct drop drop) {
-    float dx = (float)(at->x - origin->x), dy = (float)(at->y - origin->y);
-    return at->height_m - origin->height_m - drop.east_m * dx * dx - drop.north_m * dy * dy;
+static inline double sample_drawn_m(const struct sample *at, const struct sample *origin, struct drop drop) {
+    double dx = at->x - origin->x, dy = at->y - origin->y;
+    return (double)at->height_m - origin->height_m - drop.east_m * dx * dx - drop.north_m * dy * dy;
 }
 
-/* Measures the counter-clockwise triangle (a, b, c) of positive area. */
+/* Measures the counter-clockwise triangle (a, b, c) of positive area; in doubles, so that a distance that is exactly
+ * the tolerance, as whole metres often are, passes. */
 struct triangle_error samples_triangle_error(const struct samples *samples, const struct sample *a,
                                              const struct sample *b, const struct sample *c);
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #define MAX_JOINED_DEGREE 48    /* no collapse makes a larger star: fans are bad for error and for graphics alike */
-#define CANDIDATES        3     /* neighbours, the best of the quadric, whose exact errors are looked at */
+#define CANDIDATES        2     /* neighbours, the best of the quadric, whose exact errors are looked at */
 #define LEAST_CLASS       0.25f /* growths below this share of the squared tolerance are all alike */
 #define POSITION_TOP      32767
 

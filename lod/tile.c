@@ -7,10 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Rounding of a height (24 bits) and of the sums that compare it with a plane, as a share of the tile's relief.
- */
-#define FLOAT_SLACK (1.0 / (1 << 21))
-
 #define PASS_DEGREE 40    /* largest star that a pass over the borders makes */
 #define PASS_SHARE  0.25f /* of the tolerance, for the interior between two passes */
 
@@ -20,21 +16,9 @@ static int32_t height_units(const struct tile *tile, double height_m) {
     return (int32_t)lround(height_m / tile->geometry.height_unit_m);
 }
 
-/* Sets the heights of the mesh's vertices, around a reference in the middle of them. */
 static void place_vertices(struct tile *tile) {
-    struct mesh *mesh = &tile->mesh;
-    int32_t lowest = mesh->heights[0], highest = lowest;
-    for (int32_t v = 1; v < mesh->vertex_count; v++) {
-        if (mesh->heights[v] < lowest) lowest = mesh->heights[v];
-        if (mesh->heights[v] > highest) highest = mesh->heights[v];
-    }
-    double unit_m = tile->geometry.height_unit_m;
-    tile->reference_m = 0.5 * ((double)lowest + highest) * unit_m;
-    for (int32_t v = 0; v < mesh->vertex_count; v++)
-        mesh->vertices[v].at.height_m = (float)(mesh->heights[v] * unit_m - tile->reference_m);
-    double across = 0.5 * (tile->geometry.columns + (double)tile->geometry.rows);
-    double drop_m = tile->geometry.north_drop_m * across * across;
-    tile->slack_m = (float)((0.5 * ((double)highest - lowest) * unit_m + drop_m) * FLOAT_SLACK);
+    for (int32_t v = 0; v < tile->mesh.vertex_count; v++)
+        tile->mesh.vertices[v].at.height_m = (float)(tile->mesh.heights[v] * tile->geometry.height_unit_m);
 }
 
 /* The beginning of every tile. */
@@ -62,25 +46,54 @@ static struct samples samples_of(const struct tile *tile) {
 
 /* ---- a tile of posts ---- */
 
+/* The two triangles of cell (x, y), with its diagonal rising from the south-west or falling from the north-west:
+ *
+ *     c---d   rising: (a, b, d), (d, c, a); falling: (a, b, c), (d, c, b). Half-edge 0 of the first lies in the south,
+ *     | / |   of the second in the north; the vertical ones are 1 in triangles with the diagonal at 2 (rising) and
+ *     a---b   2 in those with the diagonal at 1 (falling). */
+static void make_cell(struct mesh *mesh, int32_t columns, int32_t rows, int32_t x, int32_t y) {
+    int32_t a = y * (columns + 1) + x, b = a + 1, c = a + columns + 1, d = c + 1;
+    int32_t first = 2 * (y * columns + x), second = first + 1;
+    bool rising = ((x + y) & 1) == 0;
+    struct mesh_triangle *low = &mesh->triangles[first], *high = &mesh->triangles[second];
+    memcpy(low->vertex, (int32_t[3]){a, b, rising ? d : c}, sizeof low->vertex);
+    memcpy(high->vertex, (int32_t[3]){d, c, rising ? a : b}, sizeof high->vertex);
+    int diagonal = rising ? 2 : 1, upright = rising ? 1 : 2;
+    low->twin[0] = y > 0 ? 4 * (second - 2 * columns) : MESH_NONE;
+    high->twin[0] = y < rows - 1 ? 4 * (first + 2 * columns) : MESH_NONE;
+    low->twin[diagonal] = 4 * second + diagonal;
+    high->twin[diagonal] = 4 * first + diagonal;
+    /* a rising cell has its low triangle in the east, a falling one in the west; neighbours are the other kind */
+    int32_t east = rising ? first : second, west = rising ? second : first;
+    mesh->triangles[east].twin[upright] = x < columns - 1 ? 4 * (east + 2) + 3 - upright : MESH_NONE;
+    mesh->triangles[west].twin[upright] = x > 0 ? 4 * (west - 2) + 3 - upright : MESH_NONE;
+}
+
+/* Gives every vertex its outgoing edge; on the border the border edge, which has the last word. */
+static void give_edges(struct mesh *mesh) {
+    for (int pass = 0; pass < 2; pass++)
+        for (int32_t t = 0; t < mesh->triangle_count; t++)
+            for (int i = 0; i < 3; i++)
+                if (pass == 0 || mesh->triangles[t].twin[i] == MESH_NONE)
+                    mesh->vertices[mesh->triangles[t].vertex[i]].edge = 4 * t + i;
+}
+
 /* The full grid of a tile, with alternating diagonals; `step` lattice steps from post to post. */
 static enum scree_status make_grid(struct tile *tile, int32_t step, struct scree_error *error) {
-    int32_t columns = tile->geometry.columns / step, rows = tile->geometry.rows / step, across = columns + 1;
-    enum scree_status status = mesh_allocate(tile->memory, across * (rows + 1), 2 * columns * rows, &tile->mesh, error);
+    int32_t columns = tile->geometry.columns / step, rows = tile->geometry.rows / step;
+    enum scree_status status =
+        mesh_allocate(tile->memory, (columns + 1) * (rows + 1), 2 * columns * rows, &tile->mesh, error);
     if (status != SCREE_OK) return status;
     struct mesh *mesh = &tile->mesh;
     for (int32_t y = 0; y <= rows; y++)
         for (int32_t x = 0; x <= columns; x++)
             mesh->vertices[mesh->vertex_count++].at = (struct sample){x * step, y * step, 0};
+    mesh->live_vertices = mesh->vertex_count;
+    mesh->live_triangles = mesh->triangle_count = mesh->triangle_capacity;
     for (int32_t y = 0; y < rows; y++)
-        for (int32_t x = 0; x < columns; x++) {
-            int32_t a = y * across + x, b = a + 1, c = a + across, d = c + 1;
-            bool rising = ((x + y) & 1) == 0;
-            struct mesh_triangle *pair = &mesh->triangles[mesh->triangle_count];
-            memcpy(pair[0].vertex, (int32_t[3]){a, b, rising ? d : c}, sizeof pair[0].vertex);
-            memcpy(pair[1].vertex, (int32_t[3]){d, c, rising ? a : b}, sizeof pair[1].vertex);
-            mesh->triangle_count += 2;
-        }
-    return mesh_connect(tile->memory, mesh, error);
+        for (int32_t x = 0; x < columns; x++) make_cell(mesh, columns, rows, x, y);
+    give_edges(mesh);
+    return SCREE_OK;
 }
 
 static void start_line(struct tile *tile, enum tile_side side, int32_t step, const float *heights_m, int32_t stride) {
@@ -124,15 +137,13 @@ static enum scree_status use_posts(struct tile *tile, const struct tile_posts *p
     tile->posts = scree_allocate(tile->memory, (size_t)across * (size_t)(geometry->rows + 1), sizeof *tile->posts,
                                  "a tile's posts", error);
     if (tile->posts == NULL) return SCREE_E_MEMORY;
-    for (int32_t y = 0; y <= geometry->rows; y++)
-        for (int32_t x = 0; x <= geometry->columns; x++) {
-            double height_m = posts->heights_m[(int64_t)y * posts->stride + x];
-            tile->mesh.heights[y * across + x] = height_units(tile, height_m);
-        }
-    place_vertices(tile);
-    for (int32_t y = 0; y <= geometry->rows; y++)
+    for (int32_t y = 0; y <= geometry->rows; y++) {
+        const float *row = posts->heights_m + (int64_t)y * posts->stride;
+        memcpy(tile->posts + y * across, row, (size_t)across * sizeof *row);
         for (int32_t x = 0; x <= geometry->columns; x++)
-            tile->posts[y * across + x] = (float)(posts->heights_m[(int64_t)y * posts->stride + x] - tile->reference_m);
+            tile->mesh.heights[y * across + x] = height_units(tile, row[x]);
+    }
+    place_vertices(tile);
     tile->samples = samples_of(tile);
     tile->samples.posts = tile->posts;
     tile->samples.stride = across;
@@ -177,15 +188,11 @@ static enum scree_status use_extremes(struct tile *tile, struct scree_error *err
                                geometry->rows / geometry->cell_span + 1, geometry->cell_span, &tile->slopes, error);
 }
 
-/* The extremes hold heights until the parent's have been taken from them; then they are measured from the reference. */
 static enum scree_status finish_extremes(struct tile *tile, struct scree_error *error) {
     enum scree_status status = start_rest(tile, error);
     if (status != SCREE_OK) return status;
     extremes_reduce(tile->extremes, tile->samples.columns, tile->samples.rows, tile->rest->extremes);
     slope_grid_reduce(&tile->slopes, &tile->rest->slopes);
-    int64_t count = 2 * (int64_t)tile->samples.columns * tile->samples.rows;
-    for (int64_t i = 0; i < count; i++)
-        tile->extremes[i].height_m = (float)(tile->extremes[i].height_m - tile->reference_m);
     return SCREE_OK;
 }
 
@@ -314,8 +321,7 @@ static enum scree_status collapse_borders(struct tile *tile, float bound_m, stru
 }
 
 enum scree_status tile_advance(struct tile *tile, double tolerance_m, struct scree_error *error) {
-    float bound_m = (float)tolerance_m - tile->slack_m;
-    if (bound_m < 0) bound_m = 0;
+    float bound_m = (float)tolerance_m;
     reduce_lines(tile, tolerance_m);
     enum scree_status status = collapse_borders(tile, bound_m, error);
     if (status != SCREE_OK) return status;

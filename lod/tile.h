@@ -31,10 +31,8 @@ struct tile {
     struct border_line lines[SIDE_COUNT];
     struct slope_grid slopes; /* at the corners of the cells */
     float *east_drop_m;
-    float *posts;             /* cell_span 1: heights above the reference; else NULL */
-    struct sample *extremes;  /* cell_span > 1: heights above the reference; else NULL */
-    double reference_m;       /* what heights are measured from */
-    float slack_m;            /* what the rounding of heights may add to an error */
+    float *posts;             /* cell_span 1: else NULL */
+    struct sample *extremes;  /* cell_span > 1: else NULL */
     struct coarse_tile *rest; /* what will be handed up, but for the mesh and the lines */
 };
 

@@ -11,7 +11,7 @@
 /* The default tolerance as a share of Cesium's level error. A client that draws level errors of 2 pixels then sees at
  * most half a pixel of ours. Chosen by eye: at a half, ridges visibly move when a zoom changes; at an eighth, tiles
  * grow by 60 % and pictures stay the same. */
-#define DEFAULT_TOLERANCE_SHARE 0.25
+#define DEFAULT_TOLERANCE_SHARE 0.125
 
 struct ladder_options {
     double root_error_m;             /* tolerance of zoom 0, halving with each zoom; 0: the default */
