@@ -125,32 +125,32 @@ static bool cut_ear(struct simplifier *simplifier, struct star *star) {
     return mesh_star(simplifier->mesh, star->vertex, star);
 }
 
-/* False when the vertex has to wait. */
-static bool remove_vertex(struct simplifier *simplifier, int32_t vertex, float tolerance_m, int32_t degree_limit) {
+static enum scree_status remove_vertex(struct simplifier *simplifier, int32_t vertex, float tolerance_m,
+                                       struct scree_error *error) {
     struct star star;
     struct polygon polygon;
-    if (!mesh_star(simplifier->mesh, vertex, &star)) return false;
-    while (degree_limit == MESH_MAX_DEGREE && star.degree >= POLYGON_MAX && cut_ear(simplifier, &star)) continue;
-    float error_m[2];
-    for (int end = 0; end < 2; end++) {
-        int32_t target = end == 0 ? 0 : star.degree;
-        bool crowded = star.degree + mesh_degree(simplifier->mesh, star.ring[target]) - 2 > degree_limit;
-        error_m[end] = crowded ? INFINITY : fan_error_m(simplifier, &star, target);
-    }
-    float least_m = fminf(error_m[0], error_m[1]);
-    if (least_m > tolerance_m && star.degree >= 3 && star.degree < POLYGON_MAX) {
-        triangulate(simplifier, &star, &polygon);
-        if (polygon.error_m[0][star.degree] < least_m) {
-            retriangulate(simplifier, &star, &polygon);
-            goto changed;
+    if (!mesh_star(simplifier->mesh, vertex, &star))
+        return scree_fail(error, SCREE_E_LIMIT, "a border vertex has more than %d triangles", MESH_MAX_DEGREE);
+    float first_m = fan_error_m(simplifier, &star, 0), last_m = fan_error_m(simplifier, &star, star.degree);
+    float least_m = fminf(first_m, last_m);
+    bool turned = false;
+    if (least_m > tolerance_m) {
+        while (star.degree >= POLYGON_MAX && cut_ear(simplifier, &star)) continue;
+        if (star.degree >= 3 && star.degree < POLYGON_MAX) {
+            triangulate(simplifier, &star, &polygon);
+            turned = polygon.error_m[0][star.degree] < least_m;
         }
     }
-    if (least_m == INFINITY) return false;
-    collapse_along(simplifier, &star, error_m[0] <= error_m[1] ? 0 : star.degree);
-changed:
+    if (turned)
+        retriangulate(simplifier, &star, &polygon);
+    else if (least_m < INFINITY)
+        collapse_along(simplifier, &star, first_m <= last_m ? 0 : star.degree);
+    else
+        return scree_fail(error, SCREE_E_LIMIT, "a border vertex with %d triangles cannot be taken out",
+                          (int)star.degree);
     measure_around(simplifier, &star);
     simplifier_star_changed(simplifier, &star);
-    return true;
+    return SCREE_OK;
 }
 
 /* Any vertex on the border; meshes of tiles have one border. */
@@ -160,20 +160,21 @@ static int32_t some_border_vertex(const struct mesh *mesh) {
     return MESH_NONE;
 }
 
-void border_collapse(struct simplifier *simplifier, const struct border_line lines[SIDE_COUNT], int32_t columns,
-                     int32_t rows, float tolerance_m, int32_t degree_limit, int32_t *left) {
+enum scree_status border_collapse(struct simplifier *simplifier, const struct border_line lines[SIDE_COUNT],
+                                  int32_t columns, int32_t rows, float tolerance_m, struct scree_error *error) {
     struct mesh *mesh = simplifier->mesh;
     int32_t corner = some_border_vertex(mesh), position;
     while (border_side(columns, rows, &mesh->vertices[corner].at, &position) != SIDE_COUNT)
         corner = mesh_origin(mesh, mesh_next(mesh->vertices[corner].edge));
-    *left = 0;
     for (int32_t before = corner;;) {
         int32_t vertex = mesh_origin(mesh, mesh_next(mesh->vertices[before].edge));
-        if (vertex == corner) return;
+        if (vertex == corner) return SCREE_OK;
         enum tile_side side = border_side(columns, rows, &mesh->vertices[vertex].at, &position);
-        bool keep = side == SIDE_COUNT || border_keeps(&lines[side], position);
-        if (!keep && remove_vertex(simplifier, vertex, tolerance_m, degree_limit)) continue;
-        *left += !keep;
-        before = vertex;
+        if (side == SIDE_COUNT || border_keeps(&lines[side], position)) {
+            before = vertex;
+            continue;
+        }
+        enum scree_status status = remove_vertex(simplifier, vertex, tolerance_m, error);
+        if (status != SCREE_OK) return status;
     }
 }

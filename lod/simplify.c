@@ -319,11 +319,19 @@ void simplifier_release(struct simplifier *simplifier) {
     memset(simplifier, 0, sizeof *simplifier);
 }
 
-float mesh_max_error_m(const struct mesh *mesh) {
+static struct triangle_error measure(const struct mesh *mesh, const struct mesh_triangle *triangle,
+                                     const struct samples *samples) {
+    return samples_triangle_error(samples, &mesh->vertices[triangle->vertex[0]].at,
+                                  &mesh->vertices[triangle->vertex[1]].at, &mesh->vertices[triangle->vertex[2]].at);
+}
+
+double mesh_max_error_m(const struct mesh *mesh, const struct samples *samples) {
+    struct samples at_posts = *samples;
     float max_m = 0;
+    at_posts.rounding_steps = 0;
     for (int32_t t = 0; t < mesh->triangle_count; t++)
-        if (mesh->triangles[t].vertex[0] != MESH_NONE && mesh->triangles[t].max_m > max_m)
-            max_m = mesh->triangles[t].max_m;
+        if (mesh->triangles[t].vertex[0] != MESH_NONE)
+            max_m = fmaxf(max_m, measure(mesh, &mesh->triangles[t], &at_posts).max_m);
     return max_m;
 }
 
@@ -331,9 +339,7 @@ void mesh_measure(struct mesh *mesh, const struct samples *samples) {
     for (int32_t t = 0; t < mesh->triangle_count; t++) {
         struct mesh_triangle *triangle = &mesh->triangles[t];
         if (triangle->vertex[0] == MESH_NONE) continue;
-        struct triangle_error error =
-            samples_triangle_error(samples, &mesh->vertices[triangle->vertex[0]].at,
-                                   &mesh->vertices[triangle->vertex[1]].at, &mesh->vertices[triangle->vertex[2]].at);
+        struct triangle_error error = measure(mesh, triangle, samples);
         triangle->max_m = error.max_m;
         triangle->sum_squares_m2 = error.sum_squares_m2;
     }

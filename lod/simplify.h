@@ -65,8 +65,8 @@ int32_t simplify_for_codes(struct simplifier *simplifier);
 /* Tells that the stars of these vertices have changed. */
 void simplifier_star_changed(struct simplifier *simplifier, const struct star *star);
 
-/* The largest error of the living triangles. */
-float mesh_max_error_m(const struct mesh *mesh);
+/* The largest error of the living triangles, measured anew, with the vertices at their posts. */
+double mesh_max_error_m(const struct mesh *mesh, const struct samples *samples);
 
 /* Measures every living triangle anew. */
 void mesh_measure(struct mesh *mesh, const struct samples *samples);

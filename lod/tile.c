@@ -7,9 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-#define PASS_DEGREE 40    /* largest star that a pass over the borders makes */
-#define PASS_SHARE  0.25f /* of the tolerance, for the interior between two passes */
-
 /* ---- heights ---- */
 
 static int32_t height_units(const struct tile *tile, double height_m) {
@@ -305,25 +302,11 @@ static void reduce_lines(struct tile *tile, double tolerance_m) {
     }
 }
 
-/* Long level borders lose all their vertices at once; fans would become too large. So the border goes in passes, and
- * between them the interior is thinned at a part of the tolerance that leaves room for the border's own. */
-static enum scree_status collapse_borders(struct tile *tile, float bound_m, struct scree_error *error) {
-    int32_t left, before = INT32_MAX;
-    for (int32_t limit = PASS_DEGREE;; before = left) {
-        border_collapse(&tile->simplifier, tile->lines, tile->geometry.columns, tile->geometry.rows, bound_m, limit,
-                        &left);
-        if (left == 0) return SCREE_OK;
-        if (left == before && limit == MESH_MAX_DEGREE) break;
-        if (left == before) limit = MESH_MAX_DEGREE;
-        simplify_interior(&tile->simplifier, PASS_SHARE * bound_m);
-    }
-    return scree_fail(error, SCREE_E_LIMIT, "%d vertices of a tile's border cannot be taken out", (int)left);
-}
-
 enum scree_status tile_advance(struct tile *tile, double tolerance_m, struct scree_error *error) {
     float bound_m = (float)tolerance_m;
     reduce_lines(tile, tolerance_m);
-    enum scree_status status = collapse_borders(tile, bound_m, error);
+    enum scree_status status =
+        border_collapse(&tile->simplifier, tile->lines, tile->geometry.columns, tile->geometry.rows, bound_m, error);
     if (status != SCREE_OK) return status;
     simplify_interior(&tile->simplifier, bound_m);
     if (simplify_for_codes(&tile->simplifier) == 0) return SCREE_OK;
@@ -331,7 +314,7 @@ enum scree_status tile_advance(struct tile *tile, double tolerance_m, struct scr
 }
 
 double tile_max_error_m(const struct tile *tile) {
-    return mesh_max_error_m(&tile->mesh);
+    return mesh_max_error_m(&tile->mesh, &tile->samples);
 }
 
 double tile_mmqe_m2(const struct tile *tile) {

@@ -36,12 +36,9 @@ enum scree_status build_prepare(const struct build_options *options, struct buil
     const struct raster_summary *summary = raster_summary(build->raster);
     if ((status = choose_lattice(options, summary, build, error)) != SCREE_OK) return status;
     struct ladder_options ladder = options->ladder;
-    double lowest_m = summary->height_min_m - summary->relief_margin_m;
-    double highest_m = summary->height_max_m + summary->relief_margin_m;
-    if (options->raster.profile == PROFILE_GEODETIC) {
-        lowest_m = fmin(lowest_m, options->raster.nodata_height_m);
-        highest_m = fmax(highest_m, options->raster.nodata_height_m);
-    }
+    double outside_m = options->raster.nodata_height_m;
+    double lowest_m = fmin(summary->height_min_m - summary->relief_margin_m, outside_m);
+    double highest_m = fmax(summary->height_max_m + summary->relief_margin_m, outside_m);
     ladder.relief_m = highest_m - lowest_m;
     ladder.largest_height_m = fmax(fabs(lowest_m), fabs(highest_m));
     if ((status = ladder_make(&build->lattice, &ladder, &build->ladder, error)) != SCREE_OK) return status;

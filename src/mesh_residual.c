@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-#define MANTISSA_REST  (52 - 6) /* bits of a double's mantissa that a bin does not look at: 2^6 bins an octave */
-#define FIRST_BIN      ((1023 - 24) << 6) /* everything below 2^-24 m is in the first bin */
+#define MANTISSA_REST (52 - 6) /* bits of a double's mantissa that a bin does not look at: 2^6 bins an octave */
+#define FIRST_BIN     ((1023 - 24) << 6) /* everything below 2^-24 m is in the first bin */
 
 /* A linear function of lattice steps from the tile's south-western corner. */
 struct linear {
@@ -152,6 +152,12 @@ static void scan_triangle(const struct scan *scan, const struct corner corners[3
     }
 }
 
+/* A code as lattice steps: the post that it names, where there are no more posts than codes. */
+static double position_steps(uint32_t code, int64_t span) {
+    double steps = code * (double)span / DECODED_TOP;
+    return span <= DECODED_TOP ? floor(steps + 0.5) : steps;
+}
+
 void residuals_add(const struct lattice *lattice, struct tile_id id, const struct decoded_tile *tile,
                    const struct post_block *block, bool with_east, bool with_north, struct residuals *residuals) {
     struct lattice_window window = lattice_tile_window(lattice, id);
@@ -170,8 +176,7 @@ void residuals_add(const struct lattice *lattice, struct tile_id id, const struc
         struct corner corners[3];
         for (int k = 0; k < 3; k++) {
             uint32_t vertex = tile->corners[3 * (size_t)t + (size_t)k];
-            double x = tile->u[vertex] * (double)scan.span / DECODED_TOP;
-            double y = tile->v[vertex] * (double)scan.span / DECODED_TOP;
+            double x = position_steps(tile->u[vertex], scan.span), y = position_steps(tile->v[vertex], scan.span);
             if (tile->u[vertex] == frame.right) x = scan.right; /* where the lattice cuts a tile it ends at a post, */
             if (tile->v[vertex] == frame.top) y = scan.top;     /* whose code is rounded */
             corners[k] = (struct corner){x, y, decoded_height_m(tile, vertex)};

@@ -4,7 +4,10 @@
  *             triangle: what a client answers when it is asked for a height
  *     drawn   the same, but a triangle drawn on the globe is flat and sags below the curved surface: by q, where
  *             q = (E^2 + N^2) / 2R over the metres east and north of the triangle's centroid. Equal to `height` in the
- *             local profile */
+ *             local profile
+ *
+ * Vertices stand at the posts that their codes name, as long as a tile spans no more steps than there are codes (the
+ * format moves each by up to 1/65534 of a tile, which shows on cliffs only); beyond that, where the codes say. */
 #ifndef SCREE_MESH_RESIDUAL_H
 #define SCREE_MESH_RESIDUAL_H
 
