@@ -125,8 +125,9 @@ bool border_join(const struct border_line *first, const struct border_line *seco
     for (int i = 0; i < 2; i++) {
         if (lines[i] == NULL) continue;
         line->curvature_m = lines[i]->curvature_m;
-        if (line->vertex_count + lines[i]->vertex_count > BORDER_MAX_VERTICES) return false;
-        for (int32_t v = line->vertex_count > 0; v < lines[i]->vertex_count; v++)
+        int32_t common = line->vertex_count > 0; /* the joint is the first of the second line as well */
+        if (line->vertex_count - common + lines[i]->vertex_count > BORDER_MAX_VERTICES) return false;
+        for (int32_t v = common; v < lines[i]->vertex_count; v++)
             line->vertices[line->vertex_count++] =
                 (struct border_sample){lines[i]->vertices[v].position + offsets[i], lines[i]->vertices[v].height_m};
         end = line->vertices[line->vertex_count - 1].position;
