@@ -1,5 +1,7 @@
 #include "lod/border_collapse.h"
 
+#include "lod/ear.h"
+
 #include <math.h>
 
 enum tile_side border_side(int32_t columns, int32_t rows, const struct sample *at, int32_t *position) {
@@ -51,12 +53,6 @@ static void triangulate(const struct simplifier *simplifier, const struct star *
         }
 }
 
-static void flip(struct simplifier *simplifier, int32_t edge) {
-    const struct simplify_observer *observer = simplifier->options.observer;
-    if (observer != NULL && observer->flip != NULL) observer->flip(observer->context, simplifier->mesh, edge);
-    mesh_flip(simplifier->mesh, edge);
-}
-
 /* The outgoing half-edge of a vertex that ends at `to`. */
 static int32_t edge_to(const struct mesh *mesh, int32_t vertex, int32_t to) {
     int32_t edge = mesh->vertices[vertex].edge;
@@ -72,20 +68,7 @@ static void flip_between(struct simplifier *simplifier, const struct star *star,
     int32_t k = polygon->apex[i][j];
     flip_between(simplifier, star, polygon, i, k);
     flip_between(simplifier, star, polygon, k, j);
-    flip(simplifier, edge_to(simplifier->mesh, star->vertex, star->ring[k]));
-}
-
-static void measure_around(struct simplifier *simplifier, const struct star *star) {
-    struct mesh *mesh = simplifier->mesh;
-    for (int32_t i = 0; i < star->degree; i++) {
-        struct mesh_triangle *triangle = &mesh->triangles[star->edge[i] >> 2];
-        if (triangle->vertex[0] == MESH_NONE) continue;
-        struct triangle_error error =
-            samples_triangle_error(&simplifier->samples, &mesh->vertices[triangle->vertex[0]].at,
-                                   &mesh->vertices[triangle->vertex[1]].at, &mesh->vertices[triangle->vertex[2]].at);
-        triangle->max_m = error.max_m;
-        triangle->sum_squares_m2 = error.sum_squares_m2;
-    }
+    ear_flip(simplifier, edge_to(simplifier->mesh, star->vertex, star->ring[k]));
 }
 
 static void collapse_along(struct simplifier *simplifier, const struct star *star, int32_t target) {
@@ -105,26 +88,6 @@ static void retriangulate(struct simplifier *simplifier, const struct star *star
     collapse_along(simplifier, &narrow, 0);
 }
 
-/* Flips the edge to the convex corner of the ring that costs the least error; false when there is none. */
-static bool cut_ear(struct simplifier *simplifier, struct star *star) {
-    float least_m = INFINITY;
-    int32_t ear = MESH_NONE;
-    for (int32_t i = 1; i < star->degree; i++) {
-        const struct sample *a = &star->at[i - 1], *b = &star->at[i], *c = &star->at[i + 1];
-        const struct sample *at = &simplifier->mesh->vertices[star->vertex].at;
-        if (sample_area2(a, b, c) <= 0 || sample_area2(at, a, c) <= 0) continue;
-        float error_m = samples_triangle_error(&simplifier->samples, a, b, c).max_m;
-        if (error_m >= least_m) continue;
-        least_m = error_m;
-        ear = i;
-    }
-    if (ear == MESH_NONE) return false;
-    simplifier_star_changed(simplifier, star);
-    flip(simplifier, star->edge[ear]);
-    measure_around(simplifier, star);
-    return mesh_star(simplifier->mesh, star->vertex, star);
-}
-
 static enum scree_status remove_vertex(struct simplifier *simplifier, int32_t vertex, float tolerance_m,
                                        struct scree_error *error) {
     struct star star;
@@ -135,7 +98,7 @@ static enum scree_status remove_vertex(struct simplifier *simplifier, int32_t ve
     float least_m = fminf(first_m, last_m);
     bool turned = false;
     if (least_m > tolerance_m) {
-        while (star.degree >= POLYGON_MAX && cut_ear(simplifier, &star)) continue;
+        while (star.degree >= POLYGON_MAX && ear_cut(simplifier, &star)) continue;
         if (star.degree >= 3 && star.degree < POLYGON_MAX) {
             triangulate(simplifier, &star, &polygon);
             turned = polygon.error_m[0][star.degree] < least_m;
@@ -148,7 +111,7 @@ static enum scree_status remove_vertex(struct simplifier *simplifier, int32_t ve
     else
         return scree_fail(error, SCREE_E_LIMIT, "a border vertex with %d triangles cannot be taken out",
                           (int)star.degree);
-    measure_around(simplifier, &star);
+    ear_measure(simplifier, &star);
     simplifier_star_changed(simplifier, &star);
     return SCREE_OK;
 }

@@ -14,14 +14,6 @@ struct plane {
     struct drop drop;
 };
 
-struct drop samples_drop(const struct samples *samples, double y) {
-    if (samples->east_drop_m == NULL) return (struct drop){0, 0};
-    double row = y / samples->cell_span;
-    int32_t below = row < samples->rows ? (int32_t)row : samples->rows - 1;
-    const float *drop_m = samples->east_drop_m + below;
-    return (struct drop){drop_m[0] + (row - below) * (drop_m[1] - drop_m[0]), samples->north_drop_m};
-}
-
 static struct plane plane_through(const struct samples *samples, const struct sample *a, const struct sample *b,
                                   const struct sample *c) {
     struct drop drop = samples_drop(samples, ((double)a->y + b->y + c->y) / 3);
@@ -92,64 +84,102 @@ static struct sums over_posts(const struct samples *samples, const struct plane 
     return error;
 }
 
-/* The part of a triangle's edges between two rows: from *least_x to *largest_x. */
-static void clip_to_band(const struct sample *const corner[3], int32_t y_low, int32_t y_high, double *least_x,
-                         double *largest_x) {
-    *least_x = INFINITY;
-    *largest_x = -INFINITY;
+/* Where a row crosses a triangle; left > right when it misses it. */
+struct crossing {
+    double left, right;
+};
+
+static struct crossing cross_row(const struct sample *const corner[3], int32_t y) {
+    struct crossing at = {INFINITY, -INFINITY};
     for (int i = 0; i < 3; i++) {
         const struct sample *p = corner[i], *q = corner[(i + 1) % 3];
         if (p->y > q->y) swap(&p, &q);
-        if (q->y < y_low || p->y > y_high) continue;
-        double slope = q->y > p->y ? (double)(q->x - p->x) / (q->y - p->y) : 0;
-        double first = p->y < y_low ? p->x + slope * (y_low - p->y) : p->x;
-        double last = q->y > y_high ? p->x + slope * (y_high - p->y) : q->x;
-        *least_x = fmin(*least_x, fmin(first, last));
-        *largest_x = fmax(*largest_x, fmax(first, last));
+        if (y < p->y || y > q->y || p->y == q->y) continue; /* the ends of a level edge belong to the others too */
+        double x = p->x + (double)(q->x - p->x) * (y - p->y) / (q->y - p->y);
+        if (x < at.left) at.left = x;
+        if (x > at.right) at.right = x;
     }
+    return at;
 }
+
+/* The cells of a row that may have a part in the triangle, and those among them that lie wholly inside. */
+struct cell_range {
+    int32_t first, last, inner_first, inner_last;
+};
 
 static inline int32_t clamp_cell(double position, int32_t span, int32_t cells) {
     int32_t cell = (int32_t)(position / span);
     return cell < 0 ? 0 : cell >= cells ? cells - 1 : cell;
 }
 
-/* Extremes of one row of cells that lie in the triangle: exact, by whole numbers. */
+/* `low` and `high` are where the row's lower and upper ends cross the triangle. */
+static bool range_of_row(const struct samples *samples, const struct sample *const corner[3], int32_t row,
+                         const struct crossing *low, const struct crossing *high, struct cell_range *range) {
+    int32_t span = samples->cell_span, y_low = row * span, y_high = y_low + span;
+    double least_x = low->left < high->left ? low->left : high->left;
+    double largest_x = low->right > high->right ? low->right : high->right;
+    for (int i = 0; i < 3; i++) {
+        if (corner[i]->y < y_low || corner[i]->y > y_high) continue;
+        if (corner[i]->x < least_x) least_x = corner[i]->x;
+        if (corner[i]->x > largest_x) largest_x = corner[i]->x;
+    }
+    if (least_x > largest_x) return false;
+    /* a sample on the border of its cell may be in a triangle that only touches it: one step more on the low side */
+    range->first = clamp_cell(least_x - 1 - ROW_GUARD, span, samples->columns);
+    range->last = clamp_cell(largest_x + ROW_GUARD, span, samples->columns);
+    range->inner_first = range->last + 1;
+    range->inner_last = range->last;
+    double left = low->left > high->left ? low->left : high->left;
+    double right = low->right < high->right ? low->right : high->right;
+    if (!(right - left >= span)) return true;
+    int32_t from = (int32_t)(left / span) + 1, to = (int32_t)(right / span) - 1;
+    if (from > to || to > range->last) return true;
+    range->inner_first = from;
+    range->inner_last = to;
+    return true;
+}
+
+static inline void add_sample(const struct sample *sample, const struct plane *plane, const struct sample *a,
+                              struct sums *error) {
+    double dx = sample->x - a->x, dy = sample->y - a->y;
+    double distance = sample->height_m - (plane->height_m + dx * (plane->gradient_x + dx * plane->drop.east_m) +
+                                          dy * (plane->gradient_y + dy * plane->drop.north_m));
+    double size = fabs(distance);
+    error->max_m = size > error->max_m ? size : error->max_m;
+    error->sum_squares_m2 += distance * distance;
+}
+
+/* Extremes of some cells that lie in the triangle: exact, by whole numbers. */
 static void scan_cells(const struct sample *sample, const struct sample *end, const struct plane *plane,
                        const struct sample *const corner[3], struct sums *error) {
     const struct sample *a = corner[0], *b = corner[1], *c = corner[2];
-    for (; sample < end; sample++) {
-        if (sample_area2(a, b, sample) < 0 || sample_area2(b, c, sample) < 0 || sample_area2(c, a, sample) < 0)
-            continue;
-        double dx = sample->x - a->x, dy = sample->y - a->y;
-        double distance = sample->height_m - (plane->height_m + dx * (plane->gradient_x + dx * plane->drop.east_m) +
-                                              dy * (plane->gradient_y + dy * plane->drop.north_m));
-        double size = fabs(distance);
-        error->max_m = size > error->max_m ? size : error->max_m;
-        error->sum_squares_m2 += distance * distance;
-    }
+    for (; sample < end; sample++)
+        if (sample_area2(a, b, sample) >= 0 && sample_area2(b, c, sample) >= 0 && sample_area2(c, a, sample) >= 0)
+            add_sample(sample, plane, a, error);
 }
 
 static struct sums over_extremes(const struct samples *samples, const struct plane *plane, const struct sample *a,
                                  const struct sample *b, const struct sample *c) {
     const struct sample *const corner[3] = {a, b, c};
     struct sums error = {0, 0};
-    int32_t span = samples->cell_span;
+    struct cell_range range;
     int32_t y_least = a->y, y_largest = a->y;
     for (int i = 1; i < 3; i++) {
         if (corner[i]->y < y_least) y_least = corner[i]->y;
         if (corner[i]->y > y_largest) y_largest = corner[i]->y;
     }
-    /* a sample on the border of its cell may be in a triangle that only touches it: one step more on the low sides */
-    int32_t row_last = clamp_cell(y_largest, span, samples->rows);
-    for (int32_t row = clamp_cell(y_least - 1, span, samples->rows); row <= row_last; row++) {
-        double least_x, largest_x;
-        clip_to_band(corner, row * span, (row + 1) * span, &least_x, &largest_x);
-        if (least_x > largest_x) continue;
-        int32_t first = clamp_cell(least_x - 1 - ROW_GUARD, span, samples->columns);
-        int32_t last = clamp_cell(largest_x + ROW_GUARD, span, samples->columns);
+    int32_t row = clamp_cell(y_least - 1, samples->cell_span, samples->rows);
+    int32_t row_last = clamp_cell(y_largest, samples->cell_span, samples->rows);
+    struct crossing low, high = cross_row(corner, row * samples->cell_span);
+    for (; row <= row_last; row++) {
+        low = high;
+        high = cross_row(corner, (row + 1) * samples->cell_span);
+        if (!range_of_row(samples, corner, row, &low, &high, &range)) continue;
         const struct sample *cells = samples->extremes + 2 * (int64_t)row * samples->columns;
-        scan_cells(cells + 2 * first, cells + 2 * last + 2, plane, corner, &error);
+        scan_cells(cells + 2 * range.first, cells + 2 * range.inner_first, plane, corner, &error);
+        for (int32_t i = 2 * range.inner_first; i < 2 * range.inner_last + 2; i++)
+            add_sample(cells + i, plane, a, &error);
+        scan_cells(cells + 2 * range.inner_last + 2, cells + 2 * range.last + 2, plane, corner, &error);
     }
     return error;
 }

@@ -12,6 +12,7 @@
 
 #include <scree/error.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /* A point of the lattice plane with a height. */
@@ -41,7 +42,13 @@ struct triangle_error {
 struct drop {
     double east_m, north_m;
 };
-struct drop samples_drop(const struct samples *samples, double y);
+static inline struct drop samples_drop(const struct samples *samples, double y) {
+    if (samples->east_drop_m == NULL) return (struct drop){0, 0};
+    double row = samples->cell_span == 1 ? y : y / samples->cell_span;
+    int32_t below = row < samples->rows ? (int32_t)row : samples->rows - 1;
+    const float *drop_m = samples->east_drop_m + below;
+    return (struct drop){drop_m[0] + (row - below) * (drop_m[1] - drop_m[0]), samples->north_drop_m};
+}
 
 /* The height of a point less the drop, both as seen from `origin`. */
 static inline double sample_drawn_m(const struct sample *at, const struct sample *origin, struct drop drop) {

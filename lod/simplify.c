@@ -1,5 +1,7 @@
 #include "lod/simplify.h"
 
+#include "lod/ear.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -254,11 +256,23 @@ static bool collapse_corner(struct simplifier *simplifier, const struct mesh_tri
     return false;
 }
 
-/* The same without a look at the codes of the triangles that it makes: they come next. */
+/* The same without a look at the codes of the triangles that it makes, which come next: a corner's star loses ears
+ * until three triangles are left, and those can always become one. */
 static bool collapse_corner_anyhow(struct simplifier *simplifier, const struct mesh_triangle *triangle) {
+    struct star star;
+    struct candidate candidate;
     int64_t span = simplifier->options.codes.span;
+    bool done = false;
     simplifier->options.codes.span = 0;
-    bool done = collapse_corner(simplifier, triangle);
+    for (int i = 0; i < 3 && !done; i++) {
+        int32_t vertex = triangle->vertex[i];
+        if (simplifier->state[vertex] == STATE_FIXED || !mesh_star(simplifier->mesh, vertex, &star)) continue;
+        while (star.degree > 3 && ear_cut(simplifier, &star)) continue;
+        find_candidate(simplifier, &star, &candidate);
+        if (candidate.target == MESH_NONE) continue;
+        carry_out(simplifier, &star, &candidate);
+        done = true;
+    }
     simplifier->options.codes.span = span;
     return done;
 }

@@ -1,0 +1,41 @@
+#include "lod/ear.h"
+
+#include <math.h>
+
+void ear_flip(struct simplifier *simplifier, int32_t edge) {
+    const struct simplify_observer *observer = simplifier->options.observer;
+    if (observer != NULL && observer->flip != NULL) observer->flip(observer->context, simplifier->mesh, edge);
+    mesh_flip(simplifier->mesh, edge);
+}
+
+void ear_measure(struct simplifier *simplifier, const struct star *star) {
+    struct mesh *mesh = simplifier->mesh;
+    for (int32_t i = 0; i < star->degree; i++) {
+        struct mesh_triangle *triangle = &mesh->triangles[star->edge[i] >> 2];
+        if (triangle->vertex[0] == MESH_NONE) continue;
+        struct triangle_error error =
+            samples_triangle_error(&simplifier->samples, &mesh->vertices[triangle->vertex[0]].at,
+                                   &mesh->vertices[triangle->vertex[1]].at, &mesh->vertices[triangle->vertex[2]].at);
+        triangle->max_m = error.max_m;
+        triangle->sum_squares_m2 = error.sum_squares_m2;
+    }
+}
+
+bool ear_cut(struct simplifier *simplifier, struct star *star) {
+    const struct sample *at = &simplifier->mesh->vertices[star->vertex].at;
+    float least_m = INFINITY;
+    int32_t ear = MESH_NONE;
+    for (int32_t i = star->open ? 1 : 0; i < star->degree; i++) {
+        const struct sample *a = &star->at[i > 0 ? i - 1 : star->degree - 1], *b = &star->at[i], *c = &star->at[i + 1];
+        if (sample_area2(a, b, c) <= 0 || sample_area2(at, a, c) <= 0) continue;
+        float error_m = samples_triangle_error(&simplifier->samples, a, b, c).max_m;
+        if (error_m >= least_m) continue;
+        least_m = error_m;
+        ear = i;
+    }
+    if (ear == MESH_NONE) return false;
+    simplifier_star_changed(simplifier, star);
+    ear_flip(simplifier, star->edge[ear]);
+    ear_measure(simplifier, star);
+    return mesh_star(simplifier->mesh, star->vertex, star);
+}
