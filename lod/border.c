@@ -1,12 +1,11 @@
 #include "lod/border.h"
 
-#include "lod/simplify.h"
+#include "lod/position_code.h"
 
 #include <math.h>
 #include <string.h>
 
-#define NEVER        INFINITY
-#define POSITION_TOP 32767
+#define NEVER INFINITY
 
 /* A line while vertices leave it: links between the kept ones and the cost of each. */
 struct work {

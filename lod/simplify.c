@@ -1,14 +1,11 @@
 #include "lod/simplify.h"
 
-#include "lod/ear.h"
-
 #include <math.h>
 #include <string.h>
 
 #define MAX_JOINED_DEGREE 48    /* no collapse makes a larger star: fans are bad for error and for graphics alike */
 #define CANDIDATES        2     /* neighbours, the best of the quadric, whose exact errors are looked at */
 #define LEAST_CLASS       0.25f /* growths below this share of the squared tolerance are all alike */
-#define POSITION_TOP      32767
 
 enum vertex_state {
     STATE_FIXED,   /* dead, on the border, locked, or of too large a star */
@@ -24,10 +21,6 @@ struct candidate {
     float refused_m; /* where none is: below this tolerance none can be */
     struct triangle_error errors[MESH_MAX_DEGREE];
 };
-
-int32_t position_code(int64_t position, int64_t span) {
-    return (int32_t)((2 * position * POSITION_TOP + span) / (2 * span));
-}
 
 static struct sample code_of(const struct code_frame *frame, const struct sample *at) {
     return (struct sample){position_code((int64_t)at->x + frame->x, frame->span),
@@ -235,67 +228,16 @@ void simplify_interior(struct simplifier *simplifier, float tolerance_m) {
     for (int32_t v = queue_pop(queue); v != QUEUE_NONE; v = queue_pop(queue)) visit(simplifier, v);
 }
 
-static bool positive_in_codes(const struct simplifier *simplifier, const struct mesh_triangle *triangle) {
-    const struct mesh_vertex *vertices = simplifier->mesh->vertices;
-    return simplify_positive(&simplifier->options, &vertices[triangle->vertex[0]].at, &vertices[triangle->vertex[1]].at,
-                             &vertices[triangle->vertex[2]].at);
-}
-
-/* Collapses one corner of the triangle that may go, where that leaves its star positive. */
-static bool collapse_corner(struct simplifier *simplifier, const struct mesh_triangle *triangle) {
-    struct star star;
+bool simplify_vertex(struct simplifier *simplifier, const struct star *star) {
     struct candidate candidate;
-    for (int i = 0; i < 3; i++) {
-        int32_t vertex = triangle->vertex[i];
-        if (simplifier->state[vertex] == STATE_FIXED || !mesh_star(simplifier->mesh, vertex, &star)) continue;
-        find_candidate(simplifier, &star, &candidate);
-        if (candidate.target == MESH_NONE) continue;
-        carry_out(simplifier, &star, &candidate);
-        return true;
-    }
-    return false;
+    find_candidate(simplifier, star, &candidate);
+    if (candidate.target == MESH_NONE) return false;
+    carry_out(simplifier, star, &candidate);
+    return true;
 }
 
-/* The same without a look at the codes of the triangles that it makes, which come next: a corner's star loses ears
- * until three triangles are left, and those can always become one. */
-static bool collapse_corner_anyhow(struct simplifier *simplifier, const struct mesh_triangle *triangle) {
-    struct star star;
-    struct candidate candidate;
-    int64_t span = simplifier->options.codes.span;
-    bool done = false;
-    simplifier->options.codes.span = 0;
-    for (int i = 0; i < 3 && !done; i++) {
-        int32_t vertex = triangle->vertex[i];
-        if (simplifier->state[vertex] == STATE_FIXED || !mesh_star(simplifier->mesh, vertex, &star)) continue;
-        while (star.degree > 3 && ear_cut(simplifier, &star)) continue;
-        find_candidate(simplifier, &star, &candidate);
-        if (candidate.target == MESH_NONE) continue;
-        carry_out(simplifier, &star, &candidate);
-        done = true;
-    }
-    simplifier->options.codes.span = span;
-    return done;
-}
-
-int32_t simplify_for_codes(struct simplifier *simplifier) {
-    if (simplifier->options.codes.span <= POSITION_TOP) return 0;
-    float tolerance_m = simplifier->tolerance_m;
-    int32_t bad = 1, stuck;
-    simplifier->tolerance_m = INFINITY;
-    queue_reset(&simplifier->queue, 1);
-    for (bool anyhow = false; bad > 0; anyhow = stuck == bad) {
-        bad = stuck = 0;
-        for (int32_t t = 0; t < simplifier->mesh->triangle_count; t++) {
-            const struct mesh_triangle *triangle = &simplifier->mesh->triangles[t];
-            if (triangle->vertex[0] == MESH_NONE || positive_in_codes(simplifier, triangle)) continue;
-            bad++;
-            if (collapse_corner(simplifier, triangle)) continue;
-            if (!anyhow || !collapse_corner_anyhow(simplifier, triangle)) stuck++;
-        }
-        if (anyhow && stuck == bad) break;
-    }
-    simplifier->tolerance_m = tolerance_m;
-    return bad;
+bool simplifier_may_collapse(const struct simplifier *simplifier, int32_t vertex) {
+    return simplifier->state[vertex] != STATE_FIXED;
 }
 
 enum scree_status simplifier_start(struct scree_memory *memory, struct mesh *mesh, const struct samples *samples,

@@ -12,6 +12,7 @@
 #define SCREE_LOD_SIMPLIFY_H
 
 #include "lod/mesh.h"
+#include "lod/position_code.h"
 #include "lod/queue.h"
 #include "lod/samples.h"
 
@@ -24,16 +25,9 @@ struct simplify_observer {
     void (*flip)(void *context, const struct mesh *mesh, int32_t edge);
 };
 
-/* How positions will be written: as codes 0..32767 over `span` lattice steps, counted from (-x, -y). Where the span is
- * larger than that, triangles have to stay positive in codes as well. */
-struct code_frame {
-    int64_t span; /* 0: codes are not looked at */
-    int32_t x, y; /* the mesh's origin in the frame */
-};
-
 struct simplify_options {
-    int64_t locked_step; /* vertices whose x and y are multiples of it never go; 0: none are locked */
-    struct code_frame codes;
+    int64_t locked_step;     /* vertices whose x and y are multiples of it never go; 0: none are locked */
+    struct code_frame codes; /* where its span is larger than codes tell apart, triangles stay positive in codes too */
     const struct simplify_observer *observer; /* NULL: nobody watches */
 };
 
@@ -58,9 +52,11 @@ void simplifier_release(struct simplifier *simplifier);
 /* Collapses interior vertices as far as the tolerance goes. Tolerances must not fall from call to call. */
 void simplify_interior(struct simplifier *simplifier, float tolerance_m);
 
-/* Collapses vertices of triangles that have no positive area in position codes, whatever the error. Returns how many
- * such triangles are left (their corners are all on the border, or hold each other). */
-int32_t simplify_for_codes(struct simplifier *simplifier);
+/* Collapses the star's vertex into its cheapest neighbour, if one is admissible at the present tolerance. */
+bool simplify_vertex(struct simplifier *simplifier, const struct star *star);
+
+/* Whether a vertex may ever be collapsed: it is alive, inside, and not locked. */
+bool simplifier_may_collapse(const struct simplifier *simplifier, int32_t vertex);
 
 /* Tells that the stars of these vertices have changed. */
 void simplifier_star_changed(struct simplifier *simplifier, const struct star *star);
@@ -73,9 +69,6 @@ void mesh_measure(struct mesh *mesh, const struct samples *samples);
 
 /* Triangles around a vertex. */
 int32_t mesh_degree(const struct mesh *mesh, int32_t vertex);
-
-/* A position as a code, rounded to nearest, halves up. */
-int32_t position_code(int64_t position, int64_t span);
 
 /* Whether (a, b, c) is counter-clockwise with a positive area, also in position codes where they are coarser than the
  * lattice. */

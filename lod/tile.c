@@ -1,5 +1,6 @@
 #include "lod/tile.h"
 
+#include "lod/code_collapse.h"
 #include "lod/extremes.h"
 #include "lod/merge.h"
 #include "lod/quadric.h"
@@ -314,7 +315,7 @@ failed:
 void tile_set_codes(struct tile *tile, struct code_frame codes) {
     tile->simplifier.options.codes = codes;
     /* a code is off by half a step at the most */
-    tile->simplifier.samples.rounding_steps = (float)(0.5 * (double)codes.span / 32767);
+    tile->simplifier.samples.rounding_steps = (float)(0.5 * (double)codes.span / POSITION_TOP);
 }
 
 static void reduce_lines(struct tile *tile, double tolerance_m) {
@@ -333,7 +334,7 @@ enum scree_status tile_advance(struct tile *tile, double tolerance_m, struct scr
         border_collapse(&tile->simplifier, tile->lines, tile->geometry.columns, tile->geometry.rows, bound_m, error);
     if (status != SCREE_OK) return status;
     simplify_interior(&tile->simplifier, bound_m);
-    if (simplify_for_codes(&tile->simplifier) == 0) return SCREE_OK;
+    if (code_collapse(&tile->simplifier) == 0) return SCREE_OK;
     return scree_fail(error, SCREE_E_LIMIT, "a tile's triangles are too small for the position codes of a coarse zoom");
 }
 

@@ -1,6 +1,7 @@
 /* Encoding of quantized-mesh-1.0 tiles (src/quantized_mesh.h). */
 #include "src/quantized_mesh.h"
 
+#include "lod/position_code.h"
 #include "src/ellipsoid.h"
 #include "src/occlusion.h"
 #include "src/octahedral.h"
@@ -208,8 +209,8 @@ static enum scree_status make_codes(struct encoding *e) {
         const struct scree_vertex *vertex = old_vertex(e, i);
         int64_t rise = round_height(vertex->height, is_on_border(e, vertex) ? coarsest : e->step_shift) - e->minimum;
         e->codes[i] = (struct code){
-            .u = quantized_mesh_code(vertex->x, e->span),
-            .v = quantized_mesh_code(vertex->y, e->span),
+            .u = position_code(vertex->x, e->span),
+            .v = position_code(vertex->y, e->span),
             .height = (int32_t)(e->step_shift >= 0 ? rise >> e->step_shift : rise << -e->step_shift),
         };
     }

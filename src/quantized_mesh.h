@@ -15,12 +15,7 @@
 #include <scree/error.h>
 #include <stddef.h>
 
-#define QUANTIZED_MESH_TOP 32767 /* the largest position and height code */
-
-/* A lattice position in a tile of `span` steps as a code 0..32767, rounded to nearest (halves up). */
-static inline int32_t quantized_mesh_code(int64_t position, int64_t span) {
-    return (int32_t)((2 * position * QUANTIZED_MESH_TOP + span) / (2 * span));
-}
+#define QUANTIZED_MESH_TOP 32767 /* the largest height code; positions: lod/position_code.h */
 
 /* The bytes of a tile, uncompressed, in a new block of `memory`. SCREE_E_LIMIT when the relief does not fit 32767
  * border steps or when there are 65,536 vertices or more in a way that clients refuse. */

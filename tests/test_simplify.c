@@ -1,5 +1,6 @@
 /* The collapse: errors against brute force, the bound against the judge that shares no code with it, and what else is
  * promised to the tiles. */
+#include "lod/code_collapse.h"
 #include "lod/grid_error.h"
 #include "lod/merge.h"
 #include "lod/quadric.h"
@@ -362,7 +363,7 @@ static void triangles_become_positive_in_codes(void) {
         field.samples = (struct samples){.columns = 1, .rows = 1, .cell_span = CELLS * STEP, .extremes = extremes};
         start_simplifier(&field, &options);
         CU_ASSERT(flat_in_codes(&field.mesh, &frames[i]) > 10);
-        CU_ASSERT_EQUAL(simplify_for_codes(&field.simplifier), 0);
+        CU_ASSERT_EQUAL(code_collapse(&field.simplifier), 0);
         CU_ASSERT_EQUAL(flat_in_codes(&field.mesh, &frames[i]), 0);
         CU_ASSERT_PTR_NULL(mesh_fault(&field.mesh, CELLS * STEP, CELLS * STEP));
         CU_ASSERT(field.mesh.live_vertices > SIDE * SIDE / 2); /* no more than need be */

@@ -1,0 +1,54 @@
+#include "lod/code_collapse.h"
+
+#include "lod/ear.h"
+
+#include <math.h>
+
+static bool positive_in_codes(const struct simplifier *simplifier, const struct mesh_triangle *triangle) {
+    const struct mesh_vertex *vertices = simplifier->mesh->vertices;
+    return simplify_positive(&simplifier->options, &vertices[triangle->vertex[0]].at, &vertices[triangle->vertex[1]].at,
+                             &vertices[triangle->vertex[2]].at);
+}
+
+/* Collapses one corner of the triangle. With `cut_ears` its star first loses ears until three triangles are left, which
+ * can always become one. */
+static bool collapse_corner(struct simplifier *simplifier, const struct mesh_triangle *triangle, bool cut_ears) {
+    struct star star;
+    for (int i = 0; i < 3; i++) {
+        int32_t vertex = triangle->vertex[i];
+        if (!simplifier_may_collapse(simplifier, vertex) || !mesh_star(simplifier->mesh, vertex, &star)) continue;
+        while (cut_ears && star.degree > 3 && ear_cut(simplifier, &star)) continue;
+        if (simplify_vertex(simplifier, &star)) return true;
+    }
+    return false;
+}
+
+/* The same without a look at the codes of the triangles that it makes: they come next. */
+static bool collapse_corner_anyhow(struct simplifier *simplifier, const struct mesh_triangle *triangle) {
+    int64_t span = simplifier->options.codes.span;
+    simplifier->options.codes.span = 0;
+    bool done = collapse_corner(simplifier, triangle, true);
+    simplifier->options.codes.span = span;
+    return done;
+}
+
+int32_t code_collapse(struct simplifier *simplifier) {
+    if (simplifier->options.codes.span <= POSITION_TOP) return 0;
+    float tolerance_m = simplifier->tolerance_m;
+    int32_t bad = 1, stuck;
+    simplifier->tolerance_m = INFINITY;
+    queue_reset(&simplifier->queue, 1);
+    for (bool anyhow = false; bad > 0; anyhow = stuck == bad) {
+        bad = stuck = 0;
+        for (int32_t t = 0; t < simplifier->mesh->triangle_count; t++) {
+            const struct mesh_triangle *triangle = &simplifier->mesh->triangles[t];
+            if (triangle->vertex[0] == MESH_NONE || positive_in_codes(simplifier, triangle)) continue;
+            bad++;
+            if (collapse_corner(simplifier, triangle, false)) continue;
+            if (!anyhow || !collapse_corner_anyhow(simplifier, triangle)) stuck++;
+        }
+        if (anyhow && stuck == bad) break;
+    }
+    simplifier->tolerance_m = tolerance_m;
+    return bad;
+}
