@@ -23,7 +23,7 @@ static const char help[] =
     "  --max-zoom Z         finest zoom; default: the first that is as fine as the source\n"
     "  --min-zoom Z         coarsest zoom that is written, default 0 (Cesium needs 0)\n"
     "  --error M            largest vertical error in metres at zoom 0, halving with each zoom;\n"
-    "                       default: a quarter of Cesium's level error, 19267\n"
+    "                       default: an eighth of Cesium's level error, 9633\n"
     "  --error-at Z=M       the same for one zoom; may be given for several\n"
     "  --no-normals         leave out the octvertexnormals extension\n"
     "  --plain              no gzip: for servers that do not send Content-Encoding\n"
