@@ -390,7 +390,7 @@ static void residuals_meet_every_post_once(void) {
     struct tile_frame frame = some_frame();
     struct scree_memory memory = {0};
     struct decoded_tile tile;
-    struct tile_recipe recipe = tile_recipe_grid(7, DECODED_TOP, DECODED_TOP);
+    struct tile_recipe recipe = tile_recipe_grid(8, DECODED_TOP, DECODED_TOP);
     struct residuals *sums = calloc(1, sizeof *sums);
     float *heights = calloc(257 * 257, sizeof *heights);
     for (uint32_t i = 0; i < recipe.vertex_count; i++) recipe.h[i] = (uint16_t)(recipe.u[i] / 4 + recipe.v[i] / 2);
@@ -410,7 +410,7 @@ static void residuals_meet_every_post_once(void) {
     CU_ASSERT_EQUAL(sums->height.max_y, window.y + 100);
     CU_ASSERT(residual_quantile_m(&sums->height, sums->posts, 0.99) < 2 * step_m);
     CU_ASSERT(residual_rms_m(&sums->height, sums->posts) < 40.0 / 256 + 2 * step_m);
-    /* flat triangles 3.2 degrees wide sag by about s^2 / 8R beneath the globe */
+    /* flat triangles 2.8 degrees wide sag by about s^2 / 8R beneath the globe */
     CU_ASSERT(sums->drawn.max_m > 2000 && sums->drawn.max_m < 10000);
     CU_ASSERT(residual_mean_m(&sums->drawn, sums->posts) > 1000);
     memset(sums, 0, sizeof *sums);
