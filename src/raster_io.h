@@ -63,7 +63,8 @@ void raster_reader_free(struct raster_reader *reader);
 /* Heights in metres of `columns` x `rows` posts from post (x, y), row by row from the south, west to east; `stride`
  * floats from row to row. Any window is allowed: it may leave the lattice (columns wrap around the globe in the
  * geodetic profile, rows and local columns beyond the border repeat the border), because slopes need a margin. The
- * result for a post does not depend on the window that it was asked in, nor on the reader. A pole's row has one height.
+ * result for a post does not depend on the window that it was asked in, nor on the reader. A pole's row has one height
+ * where data go around it.
  *
  * Voids whose row or column has heights on both sides, no farther apart than fill_distance, are interpolated by
  * GDALFillNodata; wider ones that the data enclose take a height interpolated on a coarse grid (about 256 cells along

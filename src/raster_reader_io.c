@@ -60,7 +60,8 @@ void raster_reader_free(struct raster_reader *reader) {
     free(reader);
 }
 
-/* A pole is one point, so its row has one height. */
+/* A pole is one point, so its row has one height. Data that do not go around it keep theirs: beyond them there are
+ * tiles that no reader is asked for, with the height of what lies outside. */
 static void level_pole(const struct raster_reader *reader, const struct block *block, int64_t post_row, float pole_m,
                        float *heights_m) {
     const struct raster_placement *placement = &reader->raster->placement;
@@ -72,7 +73,8 @@ static void level_pole(const struct raster_reader *reader, const struct block *b
 static void level_poles(const struct raster_reader *reader, const struct block *block, float nodata_m,
                         float *heights_m) {
     const struct lattice *lattice = &reader->raster->placement.lattice;
-    if (lattice->profile != PROFILE_GEODETIC) return;
+    bool is_around = reader->raster->placement.columns >= lattice->columns - 1;
+    if (lattice->profile != PROFILE_GEODETIC || !is_around) return;
     const float *pole_m = reader->raster->pole_m;
     level_pole(reader, block, 0, isnan(pole_m[0]) ? nodata_m : pole_m[0], heights_m);
     level_pole(reader, block, lattice->rows - 1, isnan(pole_m[1]) ? nodata_m : pole_m[1], heights_m);
