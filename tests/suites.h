@@ -26,5 +26,6 @@ SUITE(raster_globe)
 SUITE(raster_mosaic)
 SUITE(extract)
 SUITE(against)
+SUITE(pyramid)
 
 #undef SUITE
