@@ -8,16 +8,19 @@ void ear_flip(struct simplifier *simplifier, int32_t edge) {
     mesh_flip(simplifier->mesh, edge);
 }
 
+static void measure_triangle(struct simplifier *simplifier, struct mesh_triangle *triangle) {
+    const struct mesh_vertex *vertices = simplifier->mesh->vertices;
+    struct triangle_error error =
+        samples_triangle_error(&simplifier->samples, &vertices[triangle->vertex[0]].at,
+                               &vertices[triangle->vertex[1]].at, &vertices[triangle->vertex[2]].at);
+    triangle->max_m = error.max_m;
+    triangle->sum_squares_m2 = error.sum_squares_m2;
+}
+
 void ear_measure(struct simplifier *simplifier, const struct star *star) {
-    struct mesh *mesh = simplifier->mesh;
     for (int32_t i = 0; i < star->degree; i++) {
-        struct mesh_triangle *triangle = &mesh->triangles[star->edge[i] >> 2];
-        if (triangle->vertex[0] == MESH_NONE) continue;
-        struct triangle_error error =
-            samples_triangle_error(&simplifier->samples, &mesh->vertices[triangle->vertex[0]].at,
-                                   &mesh->vertices[triangle->vertex[1]].at, &mesh->vertices[triangle->vertex[2]].at);
-        triangle->max_m = error.max_m;
-        triangle->sum_squares_m2 = error.sum_squares_m2;
+        struct mesh_triangle *triangle = &simplifier->mesh->triangles[star->edge[i] >> 2];
+        if (triangle->vertex[0] != MESH_NONE) measure_triangle(simplifier, triangle);
     }
 }
 
@@ -35,7 +38,9 @@ bool ear_cut(struct simplifier *simplifier, struct star *star) {
     }
     if (ear == MESH_NONE) return false;
     simplifier_star_changed(simplifier, star);
-    ear_flip(simplifier, star->edge[ear]);
-    ear_measure(simplifier, star);
+    int32_t edge = star->edge[ear], twin = mesh_twin(simplifier->mesh, edge);
+    ear_flip(simplifier, edge);
+    measure_triangle(simplifier, &simplifier->mesh->triangles[edge >> 2]);
+    measure_triangle(simplifier, &simplifier->mesh->triangles[twin >> 2]);
     return mesh_star(simplifier->mesh, star->vertex, star);
 }

@@ -51,6 +51,12 @@ enum scree_status ladder_make(const struct lattice *lattice, const struct ladder
     if (status != SCREE_OK) return status;
     int finest = lattice->finest_zoom;
     ladder->height_unit_m = border_step_m(lattice, options, ladder->tolerance_m[finest], finest);
+    if (ladder->tolerance_m[finest] < ladder->height_unit_m)
+        return scree_fail(error, SCREE_E_ARGUMENT,
+                          "a tolerance of %g m at zoom %d is finer than the steps of %g m in which a relief of %g m is "
+                          "written; ask for --error-at %d=%g or more",
+                          ladder->tolerance_m[finest], finest, ladder->height_unit_m, options->relief_m, finest,
+                          ladder->height_unit_m);
     while (options->largest_height_m / ladder->height_unit_m > LARGEST_UNITS) ladder->height_unit_m *= 2;
     for (int zoom = finest; zoom >= 0; zoom--) {
         double steps = border_step_m(lattice, options, ladder->tolerance_m[zoom], zoom) / ladder->height_unit_m;

@@ -29,7 +29,7 @@ struct ladder {
     int32_t border_step[MAX_ZOOM + 1]; /* height units: border heights of a zoom are multiples of it */
 };
 
-/* SCREE_E_ARGUMENT when tolerances do not fall from zoom to zoom. */
+/* SCREE_E_ARGUMENT when tolerances grow with the zoom, or the finest is below the step of the heights. */
 enum scree_status ladder_make(const struct lattice *lattice, const struct ladder_options *options,
                               struct ladder *ladder, struct scree_error *error);
 
