@@ -192,6 +192,7 @@ struct triangle_error samples_triangle_error(const struct samples *samples, cons
         error = over_extremes(samples, &plane, a, b, c);
     else if (sample_area2(a, b, c) > 1) /* by Pick's theorem, a triangle of area 1/2 holds no post but its corners */
         error = over_posts(samples, &plane, a, b, c);
-    error.max_m += samples->rounding_steps * (fabs(plane.gradient_x) + fabs(plane.gradient_y));
+    double rounding_m = samples->rounding_steps * (fabs(plane.gradient_x) + fabs(plane.gradient_y));
+    error.max_m += rounding_m < samples->rounding_limit_m ? rounding_m : samples->rounding_limit_m;
     return (struct triangle_error){(float)error.max_m, (float)error.sum_squares_m2};
 }

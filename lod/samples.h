@@ -30,7 +30,9 @@ struct samples {
     const float *east_drop_m; /* ellipsoid's drop at one step to the east, at the rows + 1 borders of rows of cells;
                                  NULL: the Earth is flat */
     float north_drop_m;       /* the same to the north */
-    float rounding_steps; /* how far the drawn position of a vertex may be off its lattice position, in x and in y */
+    float rounding_steps;   /* how far the drawn position of a vertex may be off its lattice position, in x and in y */
+    float rounding_limit_m; /* the most that this may add to an error: on a cliff the format itself moves heights by
+                               metres, and keeping every post of it would not help */
 };
 
 struct triangle_error {

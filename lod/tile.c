@@ -8,6 +8,8 @@
 #include <math.h>
 #include <string.h>
 
+#define ROUNDING_SHARE 0.125f /* of the tolerance, for what position codes may move */
+
 /* ---- heights ---- */
 
 static int32_t height_units(const struct tile *tile, double height_m) {
@@ -329,6 +331,7 @@ static void reduce_lines(struct tile *tile, double tolerance_m) {
 
 enum scree_status tile_advance(struct tile *tile, double tolerance_m, struct scree_error *error) {
     float bound_m = (float)tolerance_m;
+    tile->simplifier.samples.rounding_limit_m = ROUNDING_SHARE * bound_m;
     reduce_lines(tile, tolerance_m);
     enum scree_status status =
         border_collapse(&tile->simplifier, tile->lines, tile->geometry.columns, tile->geometry.rows, bound_m, error);

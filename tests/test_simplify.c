@@ -137,8 +137,13 @@ static void errors_at_extremes_are_those_of_brute_force(void) {
 
 static void rounded_positions_cost_by_the_slope(void) {
     float posts[9] = {0, 2, 4, 5, 7, 9, 10, 12, 14}; /* 2 m a step east, 5 m north */
-    struct samples samples = {
-        .columns = 2, .rows = 2, .cell_span = 1, .posts = posts, .stride = 3, .rounding_steps = 0.25f};
+    struct samples samples = {.columns = 2,
+                              .rows = 2,
+                              .cell_span = 1,
+                              .posts = posts,
+                              .stride = 3,
+                              .rounding_steps = 0.25f,
+                              .rounding_limit_m = 1e9f};
     struct sample a = {0, 0, 0}, b = {2, 0, 4}, c = {0, 2, 10};
     CU_ASSERT_DOUBLE_EQUAL(samples_triangle_error(&samples, &a, &b, &c).max_m, 0.25 * (2 + 5), 1e-6);
     CU_ASSERT_DOUBLE_EQUAL(samples_triangle_error(&samples, &a, &b, &c).sum_squares_m2, 0, 1e-6);
