@@ -33,7 +33,7 @@ static bool collapse_corner_anyhow(struct simplifier *simplifier, const struct m
 }
 
 int32_t code_collapse(struct simplifier *simplifier) {
-    if (simplifier->options.codes.span <= POSITION_TOP) return 0;
+    if (simplifier->options.codes.span == 0) return 0;
     float tolerance_m = simplifier->tolerance_m;
     int32_t bad = 1, stuck;
     simplifier->tolerance_m = INFINITY;

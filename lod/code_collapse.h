@@ -1,5 +1,4 @@
-/* Takes out of a mesh what position codes cannot tell apart: needed where a tile spans more steps than there are codes.
- * Pure. */
+/* Takes out of a mesh what position codes cannot tell apart, or turn over. Pure. */
 #ifndef SCREE_LOD_CODE_COLLAPSE_H
 #define SCREE_LOD_CODE_COLLAPSE_H
 

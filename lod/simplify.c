@@ -1,6 +1,7 @@
 #include "lod/simplify.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define MAX_JOINED_DEGREE 48    /* no collapse makes a larger star: fans are bad for error and for graphics alike */
@@ -27,10 +28,21 @@ static struct sample code_of(const struct code_frame *frame, const struct sample
                            position_code((int64_t)at->y + frame->y, frame->span), 0};
 }
 
+/* Whether the triangle, of twice that area, is so thick that rounding to codes cannot turn it over: each difference of
+ * coordinates is off by span / POSITION_TOP steps at the most. Codes finer than the lattice do turn thin ones over. */
+static bool is_thick_in_codes(const struct code_frame *frame, const struct sample *a, const struct sample *b,
+                              const struct sample *c, int64_t area2) {
+    if (frame->span > POSITION_TOP) return false;
+    int64_t reach = llabs((int64_t)b->x - a->x) + llabs((int64_t)b->y - a->y) + llabs((int64_t)c->x - a->x) +
+                    llabs((int64_t)c->y - a->y);
+    return area2 * POSITION_TOP > frame->span * (reach + 2);
+}
+
 bool simplify_positive(const struct simplify_options *options, const struct sample *a, const struct sample *b,
                        const struct sample *c) {
-    if (sample_area2(a, b, c) <= 0) return false;
-    if (options->codes.span <= POSITION_TOP) return true;
+    int64_t area2 = sample_area2(a, b, c);
+    if (area2 <= 0) return false;
+    if (options->codes.span == 0 || is_thick_in_codes(&options->codes, a, b, c, area2)) return true;
     struct sample codes[3] = {code_of(&options->codes, a), code_of(&options->codes, b), code_of(&options->codes, c)};
     return sample_area2(&codes[0], &codes[1], &codes[2]) > 0;
 }

@@ -27,7 +27,7 @@ struct simplify_observer {
 
 struct simplify_options {
     int64_t locked_step;     /* vertices whose x and y are multiples of it never go; 0: none are locked */
-    struct code_frame codes; /* where its span is larger than codes tell apart, triangles stay positive in codes too */
+    struct code_frame codes; /* triangles stay positive in these codes too; span 0: codes are not looked at */
     const struct simplify_observer *observer; /* NULL: nobody watches */
 };
 
@@ -70,8 +70,8 @@ void mesh_measure(struct mesh *mesh, const struct samples *samples);
 /* Triangles around a vertex. */
 int32_t mesh_degree(const struct mesh *mesh, int32_t vertex);
 
-/* Whether (a, b, c) is counter-clockwise with a positive area, also in position codes where they are coarser than the
- * lattice. */
+/* Whether (a, b, c) is counter-clockwise with a positive area, also in the position codes of the options: rounding to
+ * codes turns thin triangles over, even where codes are finer than the lattice. */
 bool simplify_positive(const struct simplify_options *options, const struct sample *a, const struct sample *b,
                        const struct sample *c);
 
