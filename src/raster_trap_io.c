@@ -3,6 +3,7 @@
 
 #include <cpl_error.h>
 #include <stdio.h>
+#include <string.h>
 
 static void CPL_STDCALL keep_first_failure(CPLErr severity, CPLErrorNum number, const char *text) {
     (void)number;
@@ -20,7 +21,10 @@ void raster_trap_clear(void) {
 }
 
 enum scree_status raster_trap_fail(const struct raster_trap *trap, const char *what, struct scree_error *error) {
-    return scree_fail(error, SCREE_E_IO, "%s: %s", what, trap->text[0] != '\0' ? trap->text : "GDAL cannot read it");
+    const char *text = trap->text[0] != '\0' ? trap->text : "GDAL cannot read it";
+    size_t length = strlen(what); /* GDAL often names it, too */
+    while (strncmp(text, what, length) == 0 && strncmp(text + length, ": ", 2) == 0) text += length + 2;
+    return scree_fail(error, SCREE_E_IO, "%s: %s", what, text);
 }
 
 PJ_CONTEXT *raster_proj_new(void) {
