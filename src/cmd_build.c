@@ -134,7 +134,7 @@ static void tell_tile(void *context, uint32_t done, uint32_t in_all) {
 static void print_plan(const struct build *build) {
     const struct raster_summary *summary = raster_summary(build->raster);
     int finest = build->lattice.finest_zoom;
-    fprintf(stderr, "heights %.6g to %.6g m; %s\n", summary->height_min_m, summary->height_max_m, summary->datum);
+    fprintf(stderr, "%.6g to %.6g m; %s\n", summary->height_min_m, summary->height_max_m, summary->datum);
     fprintf(stderr, "finest zoom %d, largest error there %.4g m\n", finest, build->ladder.tolerance_m[finest]);
 }
 

@@ -69,9 +69,8 @@ static bool make_raster(const char *path, const char *size, bool geodetic) {
 static bool build(const char *raster, const char *out, bool geodetic, const char *threads, struct cost *cost) {
     struct cost ignored;
     const char *clear[] = {"rm", "-rf", out, NULL};
-    const char *arguments[] = {"./scree",    "build",   raster,  "-o",        out,
-                               "-q",         "-j",      threads, "--profile", geodetic ? "geodetic" : "local",
-                               "--products", "terrain", NULL};
+    const char *arguments[] = {
+        "./scree", "build", raster, "-o", out, "-q", "-j", threads, "--profile", geodetic ? "geodetic" : "local", NULL};
     return run(clear, &ignored) && run(arguments, cost) && run(clear, &ignored);
 }
 
