@@ -68,14 +68,7 @@ static void flip_between(struct simplifier *simplifier, const struct star *star,
     int32_t k = polygon->apex[i][j];
     flip_between(simplifier, star, polygon, i, k);
     flip_between(simplifier, star, polygon, k, j);
-    ear_flip(simplifier, edge_to(simplifier->mesh, star->vertex, star->ring[k]));
-}
-
-static void collapse_along(struct simplifier *simplifier, const struct star *star, int32_t target) {
-    const struct simplify_observer *observer = simplifier->options.observer;
-    if (observer != NULL && observer->collapse != NULL)
-        observer->collapse(observer->context, simplifier->mesh, star, target);
-    mesh_collapse(simplifier->mesh, star, target);
+    mesh_flip(simplifier->mesh, edge_to(simplifier->mesh, star->vertex, star->ring[k]));
 }
 
 /* Takes the vertex out after flips that leave the polygon's best triangulation. */
@@ -85,7 +78,7 @@ static void retriangulate(struct simplifier *simplifier, const struct star *star
     flip_between(simplifier, star, polygon, 0, apex);
     flip_between(simplifier, star, polygon, apex, star->degree);
     mesh_star(simplifier->mesh, star->vertex, &narrow);
-    collapse_along(simplifier, &narrow, 0);
+    mesh_collapse(simplifier->mesh, &narrow, 0);
 }
 
 static enum scree_status remove_vertex(struct simplifier *simplifier, int32_t vertex, float tolerance_m,
@@ -94,6 +87,7 @@ static enum scree_status remove_vertex(struct simplifier *simplifier, int32_t ve
     struct polygon polygon;
     if (!mesh_star(simplifier->mesh, vertex, &star))
         return scree_fail(error, SCREE_E_LIMIT, "a border vertex has more than %d triangles", MESH_MAX_DEGREE);
+    simplify_tell(simplifier, &star);
     float first_m = fan_error_m(simplifier, &star, 0), last_m = fan_error_m(simplifier, &star, star.degree);
     float least_m = fminf(first_m, last_m);
     bool turned = false;
@@ -107,7 +101,7 @@ static enum scree_status remove_vertex(struct simplifier *simplifier, int32_t ve
     if (turned)
         retriangulate(simplifier, &star, &polygon);
     else if (least_m < INFINITY)
-        collapse_along(simplifier, &star, first_m <= last_m ? 0 : star.degree);
+        mesh_collapse(simplifier->mesh, &star, first_m <= last_m ? 0 : star.degree);
     else
         return scree_fail(error, SCREE_E_LIMIT, "a border vertex with %d triangles cannot be taken out",
                           (int)star.degree);

@@ -17,6 +17,7 @@ static bool collapse_corner(struct simplifier *simplifier, const struct mesh_tri
     for (int i = 0; i < 3; i++) {
         int32_t vertex = triangle->vertex[i];
         if (!simplifier_may_collapse(simplifier, vertex) || !mesh_star(simplifier->mesh, vertex, &star)) continue;
+        if (cut_ears) simplify_tell(simplifier, &star);
         while (cut_ears && star.degree > 3 && ear_cut(simplifier, &star)) continue;
         if (simplify_vertex(simplifier, &star)) return true;
     }

@@ -2,12 +2,6 @@
 
 #include <math.h>
 
-void ear_flip(struct simplifier *simplifier, int32_t edge) {
-    const struct simplify_observer *observer = simplifier->options.observer;
-    if (observer != NULL && observer->flip != NULL) observer->flip(observer->context, simplifier->mesh, edge);
-    mesh_flip(simplifier->mesh, edge);
-}
-
 static void measure_triangle(struct simplifier *simplifier, struct mesh_triangle *triangle) {
     const struct mesh_vertex *vertices = simplifier->mesh->vertices;
     struct triangle_error error =
@@ -39,7 +33,7 @@ bool ear_cut(struct simplifier *simplifier, struct star *star) {
     if (ear == MESH_NONE) return false;
     simplifier_star_changed(simplifier, star);
     int32_t edge = star->edge[ear], twin = mesh_twin(simplifier->mesh, edge);
-    ear_flip(simplifier, edge);
+    mesh_flip(simplifier->mesh, edge);
     measure_triangle(simplifier, &simplifier->mesh->triangles[edge >> 2]);
     measure_triangle(simplifier, &simplifier->mesh->triangles[twin >> 2]);
     return mesh_star(simplifier->mesh, star->vertex, star);

@@ -4,9 +4,6 @@
 
 #include "lod/simplify.h"
 
-/* Turns an edge, before the observer's eyes. Errors are left as they were. */
-void ear_flip(struct simplifier *simplifier, int32_t edge);
-
 /* Cuts off the ear that costs the least error, and measures what it leaves; `star` becomes the smaller star. False when
  * no ear can go. */
 bool ear_cut(struct simplifier *simplifier, struct star *star);

@@ -183,10 +183,13 @@ void simplifier_star_changed(struct simplifier *simplifier, const struct star *s
         if (i < star->degree || star->open) vertex_changed(simplifier, star->ring[i]);
 }
 
-static void carry_out(struct simplifier *simplifier, const struct star *star, const struct candidate *candidate) {
+void simplify_tell(const struct simplifier *simplifier, const struct star *star) {
     const struct simplify_observer *observer = simplifier->options.observer;
-    if (observer != NULL && observer->collapse != NULL)
-        observer->collapse(observer->context, simplifier->mesh, star, candidate->target);
+    if (observer != NULL) observer->remove(observer->context, star);
+}
+
+static void carry_out(struct simplifier *simplifier, const struct star *star, const struct candidate *candidate) {
+    simplify_tell(simplifier, star);
     mesh_collapse(simplifier->mesh, star, candidate->target);
     for (int32_t j = 1; j < star->degree - 1; j++) {
         struct mesh_triangle *triangle =

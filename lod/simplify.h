@@ -16,13 +16,12 @@
 #include "lod/queue.h"
 #include "lod/samples.h"
 
-/* Someone who watches the simplification, such as a recorder of vertex splits. All members may be NULL. */
+/* Someone who watches the simplification, such as the recorder of lod/recorder.h. */
 struct simplify_observer {
     void *context;
-    /* before the star's vertex goes into ring[target] */
-    void (*collapse)(void *context, const struct mesh *mesh, const struct star *star, int32_t target);
-    /* before an edge between two triangles is turned */
-    void (*flip)(void *context, const struct mesh *mesh, int32_t edge);
+    /* Before anything at the star's vertex changes: it is about to go. Where edges are flipped first it is called with
+     * the star as it was before the flips, and maybe once more after them. */
+    void (*remove)(void *context, const struct star *star);
 };
 
 struct simplify_options {
@@ -54,6 +53,9 @@ void simplify_interior(struct simplifier *simplifier, float tolerance_m);
 
 /* Collapses the star's vertex into its cheapest neighbour, if one is admissible at the present tolerance. */
 bool simplify_vertex(struct simplifier *simplifier, const struct star *star);
+
+/* Tells the observer that the star's vertex is about to go. */
+void simplify_tell(const struct simplifier *simplifier, const struct star *star);
 
 /* Whether a vertex may ever be collapsed: it is alive, inside, and not locked. */
 bool simplifier_may_collapse(const struct simplifier *simplifier, int32_t vertex);

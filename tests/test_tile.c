@@ -391,56 +391,6 @@ static void coarse_codes_leave_positive_triangles(void) {
     CU_ASSERT_EQUAL(memory.used_bytes, 0);
 }
 
-struct replay {
-    struct mesh mesh;
-    int collapses, flips;
-};
-
-static void replay_collapse(void *context, const struct mesh *mesh, const struct star *star, int32_t target) {
-    struct replay *replay = context;
-    struct star own;
-    CU_ASSERT_EQUAL(mesh->live_vertices, replay->mesh.live_vertices);
-    CU_ASSERT_TRUE_FATAL(mesh_star(&replay->mesh, star->vertex, &own));
-    mesh_collapse(&replay->mesh, &own, target);
-    replay->collapses++;
-}
-
-static void replay_flip(void *context, const struct mesh *mesh, int32_t edge) {
-    struct replay *replay = context;
-    CU_ASSERT_NOT_EQUAL(mesh_twin(mesh, edge), MESH_NONE);
-    mesh_flip(&replay->mesh, edge);
-    replay->flips++;
-}
-
-/* Borders included, in a tile of posts and in a merged one, where border vertices have large stars and want flips. */
-static void an_observer_can_replay_a_tile(void) {
-    static struct tile tile;
-    struct scree_memory memory = {0};
-    struct replay replay = {0};
-    const struct simplify_observer observer = {&replay, replay_collapse, replay_flip};
-    struct coarse_tile *children[4];
-    int flips = 0;
-    for (int kind = 0; kind < 2; kind++) {
-        make_children(&memory, 700, 200, 64, 12, children);
-        enum scree_status status = kind == 0 ? tile_of_field(&memory, 700, 200, 128, 128, &tile)
-                                             : make_parent(&memory, 128, 128, children, &tile);
-        CU_ASSERT_EQUAL_FATAL(status, SCREE_OK);
-        free_children(&memory, children);
-        copy_mesh(&memory, &tile.mesh, &replay.mesh);
-        tile.simplifier.options.observer = &observer;
-        for (double tolerance_m = 14; tolerance_m < 300; tolerance_m *= 1.2) {
-            advance(&tile, tolerance_m);
-            CU_ASSERT_TRUE_FATAL(same_meshes(&tile.mesh, &replay.mesh));
-        }
-        CU_ASSERT(replay.collapses > 100);
-        flips += replay.flips;
-        mesh_release(&memory, &replay.mesh);
-        tile_release(&tile);
-        CU_ASSERT_EQUAL(memory.used_bytes, 0);
-    }
-    CU_ASSERT(flips > 0);
-}
-
 /* ---- tiles without data ---- */
 
 static double level_m(double x, double y) {
@@ -576,7 +526,6 @@ int suite_tile(void) {
     CU_ADD_TEST(suite, tiles_of_any_size_work);
     CU_ADD_TEST(suite, cut_children_make_a_parent);
     CU_ADD_TEST(suite, coarse_codes_leave_positive_triangles);
-    CU_ADD_TEST(suite, an_observer_can_replay_a_tile);
     CU_ADD_TEST(suite, level_tiles_meet_tiles_of_level_posts);
     CU_ADD_TEST(suite, lack_of_memory_leaves_nothing_behind);
     CU_ADD_TEST(suite, lack_of_memory_leaves_no_level_tile);
