@@ -34,16 +34,8 @@ static bool is_corner(const struct star *star, const struct sample *at) {
     return star->open && sample_area2(before, at, after) != 0;
 }
 
-/* A vertex whose star is free of what has changed in this layer. */
-static bool is_free(const struct star *star, const unsigned char *taken) {
-    if (taken[star->vertex]) return false;
-    for (int32_t i = 0; i <= star->degree; i++)
-        if (taken[star->ring[i]]) return false;
-    return true;
-}
-
 static void take_out(struct mesh *mesh, struct star *star, unsigned char *taken) {
-    for (int32_t i = 0; i <= star->degree; i++) taken[star->ring[i]] = 1;
+    for (int32_t i = 0; i <= star->degree; i++) taken[star->ring[i]] = 1; /* as neighbours of one that is gone */
     while (star->degree > (star->open ? 2 : 3) && cut_ear(mesh, star)) continue;
     mesh_collapse(mesh, star, 0);
 }
@@ -55,7 +47,7 @@ int32_t strip_layer(struct mesh *mesh, unsigned char *taken, const struct simpli
     for (int32_t most = LAYER_DEGREE; removed == 0 && most <= MESH_MAX_DEGREE; most *= 2)
         for (int32_t v = 0; v < mesh->vertex_count; v++) {
             if (mesh->vertices[v].edge == MESH_NONE || taken[v] || !mesh_star(mesh, v, &star)) continue;
-            if (star.degree > most || is_corner(&star, &mesh->vertices[v].at) || !is_free(&star, taken)) continue;
+            if (star.degree > most || is_corner(&star, &mesh->vertices[v].at)) continue;
             observer->remove(observer->context, &star);
             take_out(mesh, &star, taken);
             removed++;

@@ -4,8 +4,8 @@
 
 #include "lod/simplify.h"
 
-/* Removes one layer: as many vertices as can be found that have no neighbour in common with an earlier one of the
- * layer as their own; never a corner of the rectangle. `taken`, one a vertex slot, is scratch. The observer's `remove`
+/* Removes one layer: vertices of which no two are neighbours, about a quarter of all; never a corner of the rectangle.
+ * `taken`, one a vertex slot, is scratch. The observer's `remove`
  * is called before each removal. Holes are filled by ears of good shape. Returns how many were removed; 0 only when
  * nothing but the corners is left. */
 int32_t strip_layer(struct mesh *mesh, unsigned char *taken, const struct simplify_observer *observer);
