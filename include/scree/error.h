@@ -11,6 +11,13 @@
 
 #include <stdint.h>
 
+/* What the library shows to those who link it; everything else in it is hidden. */
+#ifdef __GNUC__
+#define SCREE_API __attribute__((visibility("default")))
+#else
+#define SCREE_API
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -36,22 +43,22 @@ struct scree_error {
 };
 
 /* Records a failure (printf style) unless `error` is NULL or already holds one; returns `status` either way. */
-enum scree_status scree_fail(struct scree_error *error, enum scree_status status, const char *format, ...)
+SCREE_API enum scree_status scree_fail(struct scree_error *error, enum scree_status status, const char *format, ...)
 #ifdef __GNUC__
     __attribute__((format(printf, 3, 4)))
 #endif
     ;
 
 /* The same for a failure at a known byte of the input. */
-enum scree_status scree_fail_at(struct scree_error *error, enum scree_status status, int64_t offset_bytes,
-                                const char *format, ...)
+SCREE_API enum scree_status scree_fail_at(struct scree_error *error, enum scree_status status, int64_t offset_bytes,
+                                          const char *format, ...)
 #ifdef __GNUC__
     __attribute__((format(printf, 4, 5)))
 #endif
     ;
 
 /* A short English phrase for a status ("out of memory"); never NULL. */
-const char *scree_status_text(enum scree_status status);
+SCREE_API const char *scree_status_text(enum scree_status status);
 
 #ifdef __cplusplus
 }

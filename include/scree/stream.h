@@ -52,6 +52,35 @@ struct scree_stream_header {
     uint32_t size_bytes;                      /* of the header itself: where the base mesh begins */
 };
 
+/* Reads a header from the first bytes of a stream; those of any stream's header fit into 64 KiB, as a rule into one.
+ * SCREE_MORE: not all of it is there yet. `header` is whole after SCREE_OK only. */
+SCREE_API enum scree_status scree_stream_header_read(const void *bytes, size_t size_bytes,
+                                                     struct scree_stream_header *header, struct scree_error *error);
+
+/* The coarsest mesh of the stream that is good enough, as an index into `rungs`: the first whose SVO or max error is at
+ * most so many metres, or whose rung of the ladder is at least `rung`; where none is, the finest. */
+SCREE_API uint32_t scree_stream_rung_of_svo(const struct scree_stream_header *header, double svo_m);
+SCREE_API uint32_t scree_stream_rung_of_error(const struct scree_stream_header *header, double max_error_m);
+SCREE_API uint32_t scree_stream_rung_of_ladder(const struct scree_stream_header *header, int32_t rung);
+
+/* Where a tile's local frame lies in the world: a point (x, y, z) of the frame, in metres, is at
+ * origin + x axes[0] + y axes[1] + z axes[2].
+ *
+ * Geodetic: the world is WGS84 ECEF in metres; the origin is on the ellipsoid at the middle of the tile's longitudes
+ * and latitudes, the axes are unit vectors to the east, north and up there. Local: the world is the CRS, heights in
+ * metres; the origin is the middle of the tile at height 0, the axes are one metre along those of the CRS. */
+struct scree_frame {
+    double origin[3];
+    double axes[3][3];
+};
+
+SCREE_API void scree_stream_frame(const struct scree_stream_header *header, struct scree_frame *frame);
+
+/* The place in the tile's frame, in metres, of a point of its lattice (fractions and points outside are fine) at a
+ * height in metres: exact on the ellipsoid, so a tile of the globe is round. */
+SCREE_API void scree_stream_position(const struct scree_stream_header *header, const struct scree_frame *frame,
+                                     double x, double y, double height_m, double position_m[3]);
+
 #ifdef __cplusplus
 }
 #endif
