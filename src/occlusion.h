@@ -5,7 +5,7 @@
 #ifndef SCREE_OCCLUSION_H
 #define SCREE_OCCLUSION_H
 
-#include "src/ellipsoid.h"
+#include "stream/ellipsoid.h"
 #include <stdint.h>
 
 /* Where no finite point hides the tile (it reaches 90 degrees from its centre, or nearly), the point is this far out.

@@ -3,7 +3,7 @@
 #ifndef SCREE_OCTAHEDRAL_H
 #define SCREE_OCTAHEDRAL_H
 
-#include "src/ellipsoid.h"
+#include "stream/ellipsoid.h"
 
 /* `unit` must have a length of about 1. */
 void octahedral_encode(struct vector3 unit, unsigned char code[2]);

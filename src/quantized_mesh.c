@@ -2,10 +2,10 @@
 #include "src/quantized_mesh.h"
 
 #include "lod/position_code.h"
-#include "src/ellipsoid.h"
 #include "src/occlusion.h"
 #include "src/octahedral.h"
 #include "src/quantized_mesh_order.h"
+#include "stream/ellipsoid.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /* Static tiles as they are written: the ellipsoid, culling aids, the order of triangles, the codes. Tiles are read back
  * by src/quantized_mesh_decode.c, which shares no code with the writer. */
-#include "src/ellipsoid.h"
+#include "stream/ellipsoid.h"
 #include "src/occlusion.h"
 #include "src/octahedral.h"
 #include "src/quantized_mesh.h"

@@ -1,5 +1,5 @@
-/* The WGS84 ellipsoid (src/ellipsoid.h). */
-#include "src/ellipsoid.h"
+/* The WGS84 ellipsoid (stream/ellipsoid.h). */
+#include "stream/ellipsoid.h"
 
 #include <math.h>
 

@@ -2,8 +2,8 @@
  *
  * Sines and cosines are our own, made of additions, multiplications and square roots only, so that a tile has the same
  * bytes whatever C library it was built with. Angles are degrees: quarter turns are exact. */
-#ifndef SCREE_ELLIPSOID_H
-#define SCREE_ELLIPSOID_H
+#ifndef SCREE_STREAM_ELLIPSOID_H
+#define SCREE_STREAM_ELLIPSOID_H
 
 #define WGS84_MAJOR_M 6378137.0
 #define WGS84_MINOR_M 6356752.314245179 /* (1 - 1 / 298.257223563) of it */
