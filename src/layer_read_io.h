@@ -4,13 +4,10 @@
 #define SCREE_LAYER_READ_IO_H
 
 #include "src/lattice.h"
+#include "src/manifest_read_io.h"
 #include "stream/memory.h"
 #include <scree/error.h>
 #include <stdbool.h>
-
-struct layer_range { /* inclusive */
-    uint32_t x_first, y_first, x_last, y_last;
-};
 
 struct layer_zoom_info { /* of the "scree" member; zeros where there is none */
     bool is_told;
@@ -27,9 +24,7 @@ struct layer_info {
     double nodata_height_m;
     char *crs_wkt, *datum, *attribution; /* "" when not told */
     bool has_available;                  /* else: metadata in the tiles, or nothing */
-    int available_zooms;                 /* zooms that `available` has a list for */
-    uint32_t range_counts[MAX_ZOOM + 1];
-    struct layer_range *ranges[MAX_ZOOM + 1];
+    struct manifest_ranges available;
     struct layer_zoom_info zooms[MAX_ZOOM + 1];
     char complaint[240]; /* what clients would miss in it; "" when nothing */
 };
@@ -41,8 +36,5 @@ enum scree_status layer_read(struct scree_memory *memory, const char *path, stru
 
 /* Safe on a zeroed layer and twice. */
 void layer_info_free(struct scree_memory *memory, struct layer_info *layer);
-
-/* Tiles that `available` lists at a zoom. */
-uint64_t layer_listed_tiles(const struct layer_info *layer, int zoom);
 
 #endif

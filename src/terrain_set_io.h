@@ -4,13 +4,14 @@
 
 #include "src/lattice.h"
 #include "src/layer_read_io.h"
+#include "src/product_files_io.h"
 #include "src/quantized_mesh_decode.h"
 #include "src/tile_list.h"
 #include "stream/memory.h"
 #include <scree/error.h>
 
 struct terrain_set {
-    char folder[3072]; /* that holds layer.json */
+    char folder[PRODUCT_FOLDER_BYTES]; /* that holds layer.json */
     struct layer_info layer;
     struct tile_list tiles[MAX_ZOOM + 1]; /* the files that are there */
 };

@@ -53,8 +53,8 @@ static enum scree_status check_available(struct scree_memory *memory, const stru
     const struct layer_info *layer = &set->layer;
     uint8_t *listed = scree_allocate(memory, list->count, 1, "marks of listed tiles", error);
     if (listed == NULL) return error->status;
-    for (uint32_t i = 0; i < layer->range_counts[zoom]; i++)
-        check_range(list, zoom, &layer->ranges[zoom][i], listed, report);
+    for (uint32_t i = 0; i < layer->available.counts[zoom]; i++)
+        check_range(list, zoom, &layer->available.ranges[zoom][i], listed, report);
     for (uint32_t i = 0; i < list->count; i++)
         if (listed[i] == 0)
             report_broken(report, PROMISE_AVAILABLE, "tile " TILE " is there and not listed in layer.json",
