@@ -88,8 +88,8 @@ SCREE_API void scree_player_look(struct scree_player *player, struct scree_array
 /* A vertex is drawn at origin + weight (position - origin). The weight is a function of one number for the whole tile
  * and of one for each vertex, so a vertex shader computes it: clamp(level + 1 - increment, 0, 1).
  *
- * A vertex inside the tile comes out of the vertex that it was split from; one on the border rises vertically from the
- * border of the rung before, so that two tiles at the same level meet whatever their parents. */
+ * A vertex inside the tile comes out of the vertex that it was split from; one on the border out of the straight edge
+ * that the rung before has at its place, so that two tiles at the same level meet whatever their parents. */
 static inline double scree_morph_weight(double level, uint16_t increment) {
     double weight = level + 1 - increment;
     return weight < 0 ? 0 : weight > 1 ? 1 : weight;
