@@ -34,10 +34,18 @@ static bool is_corner(const struct star *star, const struct sample *at) {
     return star->open && sample_area2(before, at, after) != 0;
 }
 
+/* Where a closed star without ears collapses to. Its vertex lies on both diagonals of a quadrilateral, or on the only
+ * one that is inside. */
+static int32_t last_target(const struct star *star) {
+    bool first_inside = star->degree != 4 || (shape(&star->at[0], &star->at[1], &star->at[2]) > 0 &&
+                                              shape(&star->at[0], &star->at[2], &star->at[3]) > 0);
+    return star->open || first_inside ? 0 : 1;
+}
+
 static void take_out(struct mesh *mesh, struct star *star, unsigned char *taken) {
     for (int32_t i = 0; i <= star->degree; i++) taken[star->ring[i]] = 1; /* as neighbours of one that is gone */
     while (star->degree > (star->open ? 2 : 3) && cut_ear(mesh, star)) continue;
-    mesh_collapse(mesh, star, 0);
+    mesh_collapse(mesh, star, last_target(star));
 }
 
 int32_t strip_layer(struct mesh *mesh, unsigned char *taken, const struct simplify_observer *observer) {
