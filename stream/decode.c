@@ -1,0 +1,127 @@
+#include "stream/decode.h"
+
+#include "stream/layers.h"
+
+#include <string.h>
+
+struct stream_decoder {
+    struct scree_memory *memory;
+    const struct scree_stream_header *header;
+    struct surface surface;
+    struct increment increment;
+    struct range_coder coder;
+    struct progressive decoded;
+    uint32_t blocks; /* decoded */
+    bool failed;
+};
+
+enum scree_status stream_decoder_new(struct scree_memory *memory, const struct scree_stream_header *header,
+                                     struct stream_decoder **decoder, struct scree_error *error) {
+    const struct scree_rung *base = &header->rungs[0], *finest = &header->rungs[header->rung_count - 1];
+    uint32_t most = base->vertex_count, splits = finest->vertex_count - base->vertex_count;
+    for (uint32_t i = 1; i < header->rung_count; i++) {
+        uint32_t added = header->rungs[i].vertex_count - header->rungs[i - 1].vertex_count;
+        if (added > most) most = added;
+    }
+    struct stream_decoder *made = scree_allocate(memory, 1, sizeof *made, "a stream's decoder", error);
+    *decoder = NULL;
+    if (made == NULL) return SCREE_E_MEMORY;
+    made->memory = memory;
+    made->header = header;
+    struct progressive *decoded = &made->decoded;
+    decoded->vertices = scree_allocate(memory, finest->vertex_count, sizeof *decoded->vertices, "vertices", error);
+    decoded->corners =
+        scree_allocate(memory, 3 * (size_t)finest->triangle_count, sizeof *decoded->corners, "triangles", error);
+    decoded->splits = scree_allocate(memory, splits, sizeof *decoded->splits, "splits", error);
+    enum scree_status status = SCREE_E_MEMORY;
+    if (decoded->vertices != NULL && decoded->corners != NULL && decoded->splits != NULL)
+        status = surface_start(memory, finest->vertex_count, finest->triangle_count, &made->surface, error);
+    if (status == SCREE_OK) status = increment_start(memory, most, &made->surface, &made->increment, error);
+    if (status != SCREE_OK) {
+        if (error != NULL && error->status != SCREE_OK) status = error->status;
+        stream_decoder_free(made);
+        return status;
+    }
+    made->increment.coder = &made->coder;
+    *decoder = made;
+    return SCREE_OK;
+}
+
+void stream_decoder_free(struct stream_decoder *decoder) {
+    if (decoder == NULL) return;
+    struct scree_memory *memory = decoder->memory;
+    if (decoder->increment.memory != NULL) increment_release(&decoder->increment);
+    surface_release(memory, &decoder->surface);
+    scree_release(memory, decoder->decoded.fixups);
+    scree_release(memory, decoder->decoded.splits);
+    scree_release(memory, decoder->decoded.corners);
+    scree_release(memory, decoder->decoded.vertices);
+    scree_release(memory, decoder);
+}
+
+/* The base becomes the beginning of the arrays. */
+static void take_base(struct stream_decoder *decoder) {
+    const struct surface *surface = &decoder->surface;
+    struct progressive *decoded = &decoder->decoded;
+    decoded->base_vertices = decoded->vertex_count = surface->vertex_count;
+    decoded->base_triangles = decoded->triangle_count = surface->triangle_count;
+    memcpy(decoded->vertices, surface->vertices, surface->vertex_count * sizeof *decoded->vertices);
+    for (uint32_t t = 0; t < surface->triangle_count; t++)
+        memcpy(decoded->corners + 3 * (size_t)t, surface->triangles[t].vertex, sizeof surface->triangles[t].vertex);
+}
+
+static enum scree_status decode_base(struct stream_decoder *decoder, struct scree_error *error) {
+    struct base_start start = {0};
+    uint32_t most = decoder->header->rungs[0].vertex_count;
+    enum scree_status status = SCREE_OK;
+    base_start_code(&decoder->coder, &start);
+    surface_rectangle(&decoder->surface, decoder->header->columns, decoder->header->rows, start.rising);
+    for (int i = 0; i < 4; i++) decoder->surface.vertices[i].height = start.heights[i];
+    decoder->increment.height_step = 1 << start.step_bits;
+    for (uint32_t layer = 0; layer < start.layers && status == SCREE_OK; layer++) {
+        uint32_t before = decoder->surface.vertex_count;
+        status = increment_code(&decoder->increment, most - before, error);
+        if (status == SCREE_OK && decoder->surface.vertex_count == before)
+            status = scree_fail(error, SCREE_E_CORRUPT, "a layer of the base mesh is empty");
+    }
+    increment_forget(&decoder->increment);
+    return status;
+}
+
+static enum scree_status decode_increment(struct stream_decoder *decoder, struct scree_error *error) {
+    uint32_t most = decoder->header->rungs[decoder->blocks].vertex_count - decoder->surface.vertex_count;
+    decoder->increment.splits = &decoder->decoded;
+    return increment_code(&decoder->increment, most, error);
+}
+
+enum scree_status stream_decode_block(struct stream_decoder *decoder, const void *bytes, size_t size_bytes,
+                                      struct scree_error *error) {
+    if (decoder->failed || decoder->blocks == decoder->header->rung_count)
+        return scree_fail(error, SCREE_E_ARGUMENT, "no block is left to decode");
+    const struct scree_rung *rung = &decoder->header->rungs[decoder->blocks];
+    const struct progressive before = decoder->decoded;
+    struct progressive *decoded = &decoder->decoded;
+    range_coder_read(bytes, size_bytes, &decoder->coder);
+    enum scree_status status = decoder->blocks == 0 ? decode_base(decoder, error) : decode_increment(decoder, error);
+    if (status == SCREE_OK && (decoder->surface.vertex_count != rung->vertex_count ||
+                               decoder->surface.triangle_count != rung->triangle_count))
+        status = scree_fail(error, SCREE_E_CORRUPT, "a block does not hold what the header says");
+    if (status == SCREE_OK && !range_coder_is_spent(&decoder->coder))
+        status = scree_fail(error, SCREE_E_CORRUPT, "a block is longer or shorter than what is in it");
+    if (status != SCREE_OK) {
+        struct progressive_fixup *fixups = decoded->fixups;
+        uint32_t capacity = decoded->fixup_capacity;
+        *decoded = before;
+        decoded->fixups = fixups;
+        decoded->fixup_capacity = capacity;
+        decoder->failed = true;
+        return status;
+    }
+    if (decoder->blocks == 0) take_base(decoder);
+    decoder->blocks++;
+    return SCREE_OK;
+}
+
+const struct progressive *stream_decoded(const struct stream_decoder *decoder) {
+    return &decoder->decoded;
+}

@@ -1,0 +1,120 @@
+#include "stream/surface.h"
+
+#include "stream/posts.h"
+
+#include <string.h>
+
+enum scree_status surface_start(struct scree_memory *memory, uint32_t vertex_capacity, uint32_t triangle_capacity,
+                                struct surface *surface, struct scree_error *error) {
+    memset(surface, 0, sizeof *surface);
+    surface->vertices =
+        scree_allocate(memory, vertex_capacity, sizeof *surface->vertices, "a stream's vertices", error);
+    surface->triangles =
+        scree_allocate(memory, triangle_capacity, sizeof *surface->triangles, "a stream's triangles", error);
+    surface->triangle_capacity = triangle_capacity;
+    if (surface->vertices != NULL && surface->triangles != NULL) return SCREE_OK;
+    surface_release(memory, surface);
+    return SCREE_E_MEMORY;
+}
+
+void surface_release(struct scree_memory *memory, struct surface *surface) {
+    scree_release(memory, surface->triangles);
+    scree_release(memory, surface->vertices);
+    memset(surface, 0, sizeof *surface);
+}
+
+static void renew(struct surface *surface, uint32_t t) {
+    surface->triangles[t].posts = posts_count(surface, t);
+    surface->triangles[t].born = surface->increment;
+    surface->triangles[t].first = SURFACE_NONE;
+}
+
+void surface_rectangle(struct surface *surface, int32_t columns, int32_t rows, bool rising) {
+    /* corners of the two triangles; the diagonal is the third half-edge of both */
+    static const uint32_t corners[2][2][3] = {{{2, 0, 1}, {1, 3, 2}}, {{0, 1, 3}, {3, 2, 0}}};
+    for (uint32_t v = 0; v < 4; v++)
+        surface->vertices[v] = (struct scree_vertex){v % 2 != 0 ? columns : 0, v / 2 != 0 ? rows : 0, 0};
+    surface->vertex_count = 4;
+    surface->triangle_count = 2;
+    for (uint32_t t = 0; t < 2; t++) {
+        memcpy(surface->triangles[t].vertex, corners[rising][t], sizeof corners[rising][t]);
+        surface->triangles[t].twin[0] = surface->triangles[t].twin[1] = SURFACE_NONE;
+        surface->triangles[t].twin[2] = 4 * (1 - t) + 2;
+    }
+    for (uint32_t t = 0; t < 2; t++) renew(surface, t);
+}
+
+/* The slot that takes the fan's triangle on each outer edge: the triangle of the cavity whose edge it is, if that has
+ * none yet; then what is left of the cavity's triangles; then new ones. */
+static void choose_slots(struct surface *surface, struct cavity *cavity) {
+    uint32_t left = 0; /* triangles of the cavity without an outer edge of their own come last, if at all */
+    for (uint32_t i = 0; i < cavity->triangle_count; i++) surface->triangles[cavity->triangles[i]].first = SURFACE_NONE;
+    for (uint32_t i = 0; i < cavity->edge_count; i++) {
+        uint32_t t = cavity->edges[i] >> 2;
+        bool taken = surface->triangles[t].first == 0;
+        cavity->slots[i] = taken ? SURFACE_NONE : t;
+        surface->triangles[t].first = 0;
+    }
+    for (uint32_t i = 0; i < cavity->edge_count; i++) {
+        if (cavity->slots[i] != SURFACE_NONE) continue;
+        while (left < cavity->triangle_count && surface->triangles[cavity->triangles[left]].first == 0) left++;
+        cavity->slots[i] = left < cavity->triangle_count ? cavity->triangles[left++] : surface->triangle_count++;
+    }
+}
+
+static void record_fixups(struct progressive *splits, uint32_t slot, const uint32_t coarse[3], const uint32_t fine[3]) {
+    for (uint32_t i = 0; i < 3; i++)
+        if (coarse[i] != fine[i])
+            splits->fixups[splits->fixup_count++] = (struct progressive_fixup){3 * slot + i, coarse[i], fine[i]};
+}
+
+/* One triangle of the fan: the outer edge keeps its corners of the slot where it has been there before. */
+static void set_triangle(struct surface *surface, uint32_t slot, int corner, uint32_t from, uint32_t to, uint32_t apex,
+                         uint32_t twin, struct progressive *splits) {
+    struct surface_triangle *triangle = &surface->triangles[slot];
+    uint32_t fine[3];
+    fine[corner] = from;
+    fine[(corner + 1) % 3] = to;
+    fine[(corner + 2) % 3] = apex;
+    if (splits != NULL && slot < splits->triangle_count)
+        record_fixups(splits, slot, triangle->vertex, fine);
+    else if (splits != NULL)
+        memcpy(splits->corners + 3 * (size_t)slot, fine, sizeof fine);
+    memcpy(triangle->vertex, fine, sizeof fine);
+    triangle->twin[corner] = twin;
+    if (twin != SURFACE_NONE) surface->triangles[twin >> 2].twin[twin & 3] = 4 * slot + (uint32_t)corner;
+}
+
+/* Looks at the outer edges before anything is changed. */
+static void look_at_edges(const struct surface *surface, struct cavity *cavity) {
+    for (uint32_t i = 0; i < cavity->edge_count; i++) {
+        uint32_t edge = cavity->edges[i];
+        cavity->from[i] = surface_origin(surface, edge);
+        cavity->to[i] = surface_origin(surface, surface_next(edge));
+        cavity->twin[i] = surface_twin(surface, edge);
+    }
+}
+
+void surface_insert(struct surface *surface, struct cavity *cavity, struct progressive *splits) {
+    uint32_t apex = surface->vertex_count++, count = cavity->edge_count;
+    look_at_edges(surface, cavity);
+    choose_slots(surface, cavity);
+    for (uint32_t i = 0; i < count; i++) {
+        int corner = cavity->slots[i] == cavity->edges[i] >> 2 ? (int)(cavity->edges[i] & 3) : 0;
+        set_triangle(surface, cavity->slots[i], corner, cavity->from[i], cavity->to[i], apex, cavity->twin[i], splits);
+        cavity->twin[i] = 4 * cavity->slots[i] + (uint32_t)corner; /* from here on: where the outer edge is now */
+    }
+    for (uint32_t i = 0; i < count; i++) { /* spokes */
+        uint32_t next = i + 1 < count ? i + 1 : 0;
+        uint32_t leaving = surface_next(cavity->twin[i]), coming = surface_previous(cavity->twin[next]);
+        bool border = cavity->open && next == 0;
+        surface->triangles[leaving >> 2].twin[leaving & 3] = border ? SURFACE_NONE : coming;
+        surface->triangles[coming >> 2].twin[coming & 3] = border ? SURFACE_NONE : leaving;
+    }
+    for (uint32_t i = 0; i < count; i++) renew(surface, cavity->slots[i]);
+    if (splits == NULL) return;
+    splits->vertices[apex] = surface->vertices[apex];
+    splits->vertex_count = surface->vertex_count;
+    splits->triangle_count = surface->triangle_count;
+    splits->splits[splits->split_count++].fixup_end = splits->fixup_count;
+}

@@ -1,0 +1,73 @@
+/* The triangulation that encoder and decoder grow side by side: triangles over lattice posts, with neighbours. Pure.
+ *
+ * A half-edge is 4 * triangle + corner (corner 0 .. 2); it starts at that corner and runs counter-clockwise.
+ *
+ * A cavity is a set of triangles whose union a point sees whole. Inserting the point makes them give way to the fan of
+ * the cavity's outer edges around it: this is how a vertex comes into a triangulation, and how any removal is undone.
+ */
+#ifndef SCREE_STREAM_SURFACE_H
+#define SCREE_STREAM_SURFACE_H
+
+#include "stream/memory.h"
+#include "stream/progressive.h"
+#include <stdbool.h>
+
+#define SURFACE_NONE UINT32_MAX
+#define CAVITY_MOST  1024 /* triangles */
+
+struct surface_triangle {
+    uint32_t vertex[3];
+    uint32_t twin[3]; /* the half-edge on the other side; SURFACE_NONE on the border */
+    uint16_t posts;   /* lattice posts of the triangle where a vertex can be inserted, as far as 65535 */
+    uint16_t born;    /* the increment that made it what it is */
+    uint32_t first;   /* of a list of points that lie in it, kept by whoever uses the surface; SURFACE_NONE */
+};
+
+struct surface {
+    uint32_t vertex_count, triangle_count, triangle_capacity;
+    struct scree_vertex *vertices;
+    struct surface_triangle *triangles;
+    uint16_t increment; /* the present one: what triangles are born in */
+};
+
+struct cavity {
+    uint32_t triangle_count, edge_count;
+    bool open; /* the point lies on the border */
+    uint32_t triangles[CAVITY_MOST];
+    uint32_t edges[CAVITY_MOST + 2]; /* outer half-edges of the triangles, counter-clockwise; an open cavity's begin
+                                        at the border vertex that follows the point */
+    /* of each outer edge: its ends, what is beyond it, the slot of the fan's triangle; filled by surface_insert */
+    uint32_t from[CAVITY_MOST + 2], to[CAVITY_MOST + 2], twin[CAVITY_MOST + 2], slots[CAVITY_MOST + 2];
+};
+
+static inline uint32_t surface_next(uint32_t edge) {
+    return (edge & 3) == 2 ? edge - 2 : edge + 1;
+}
+static inline uint32_t surface_previous(uint32_t edge) {
+    return (edge & 3) == 0 ? edge + 2 : edge - 1;
+}
+static inline uint32_t surface_origin(const struct surface *surface, uint32_t edge) {
+    return surface->triangles[edge >> 2].vertex[edge & 3];
+}
+static inline uint32_t surface_twin(const struct surface *surface, uint32_t edge) {
+    return surface->triangles[edge >> 2].twin[edge & 3];
+}
+
+/* Twice the signed area of (a, b, c) in lattice steps: exact, positive when counter-clockwise. */
+static inline int64_t surface_area2(const struct scree_vertex *a, const struct scree_vertex *b,
+                                    const struct scree_vertex *c) {
+    return (int64_t)(b->x - a->x) * (c->y - a->y) - (int64_t)(c->x - a->x) * (b->y - a->y);
+}
+
+/* Room for so many; two triangles over a rectangle of columns x rows steps, whose corners are vertices 0 .. 3
+ * (south-west, south-east, north-west, north-east; heights 0), divided from south-west to north-east if `rising`. */
+enum scree_status surface_start(struct scree_memory *memory, uint32_t vertex_capacity, uint32_t triangle_capacity,
+                                struct surface *surface, struct scree_error *error);
+void surface_rectangle(struct surface *surface, int32_t columns, int32_t rows, bool rising);
+void surface_release(struct scree_memory *memory, struct surface *surface);
+
+/* Puts vertex number vertex_count, which the caller has set, into the cavity. Fix-ups are appended to `splits` when it
+ * is not NULL; it must have room for 3 * cavity->triangle_count of them, one split, and the new triangles. */
+void surface_insert(struct surface *surface, struct cavity *cavity, struct progressive *splits);
+
+#endif
