@@ -17,9 +17,9 @@ static void put_byte(struct range_coder *coder, unsigned char byte) {
     coder->written[coder->written_bytes++] = byte;
 }
 
-/* Moves the top byte of `low` out, with the carry that may have come. */
+/* Moves the top byte of `low` out, with the carry that may have come; none comes beyond the first byte. */
 static void shift_low(struct range_coder *coder) {
-    if (coder->low < 0xFF000000U || coder->low > UINT32_MAX) {
+    if (coder->waiting == 0 || coder->low < 0xFF000000U || coder->low > UINT32_MAX) {
         unsigned char carry = (unsigned char)(coder->low >> 32);
         for (; coder->waiting > 0; coder->waiting--) {
             put_byte(coder, (unsigned char)(coder->cache + carry));
