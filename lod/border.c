@@ -89,16 +89,20 @@ void border_separate_codes(struct border_line *line, int64_t code_span, int32_t 
     line->vertex_count = kept;
 }
 
-bool border_keeps(const struct border_line *line, int32_t position) {
+int32_t border_before(const struct border_line *line, int32_t position) {
     int32_t low = 0, high = line->vertex_count - 1;
     while (low < high) {
-        int32_t middle = (low + high) / 2;
-        if (line->vertices[middle].position < position)
-            low = middle + 1;
+        int32_t middle = (low + high + 1) / 2;
+        if (line->vertices[middle].position <= position)
+            low = middle;
         else
-            high = middle;
+            high = middle - 1;
     }
-    return line->vertices[low].position == position;
+    return low;
+}
+
+bool border_keeps(const struct border_line *line, int32_t position) {
+    return line->vertices[border_before(line, position)].position == position;
 }
 
 /* Adds the extremes of the samples of one line to those of the closed cells. */

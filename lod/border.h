@@ -42,6 +42,9 @@ void border_reduce(struct border_line *line, double tolerance_m, int64_t locked_
  * before the line) coincide, never an end. */
 void border_separate_codes(struct border_line *line, int64_t code_span, int32_t offset);
 
+/* The last kept vertex at or before a position. */
+int32_t border_before(const struct border_line *line, int32_t position);
+
 /* Whether a vertex at this position is kept. */
 bool border_keeps(const struct border_line *line, int32_t position);
 

@@ -1,5 +1,6 @@
 #include "lod/border_collapse.h"
 
+#include "lod/ahead.h"
 #include "lod/ear.h"
 
 #include <math.h>
@@ -13,14 +14,16 @@ enum tile_side border_side(int32_t columns, int32_t rows, const struct sample *a
 }
 
 /* Errors of the fan from ring[target] (0 or degree) that a collapse along the border leaves; INFINITY when a triangle
- * would lose its area. */
+ * would lose its area, or a rung to come get out of reach. */
 static float fan_error_m(const struct simplifier *simplifier, const struct star *star, int32_t target) {
     float largest_m = 0;
     int32_t first = target == 0 ? 1 : 0;
     for (int32_t i = first; i < first + star->degree - 1; i++) {
         const struct sample *a = &star->at[target], *b = &star->at[i], *c = &star->at[i + 1];
         if (sample_area2(a, b, c) <= 0) return INFINITY;
-        largest_m = fmaxf(largest_m, samples_triangle_error(&simplifier->samples, a, b, c).max_m);
+        float error_m = samples_triangle_error(&simplifier->samples, a, b, c).max_m;
+        if (!ahead_admits(simplifier, a, b, c, error_m)) return INFINITY;
+        largest_m = fmaxf(largest_m, error_m);
     }
     return largest_m;
 }
@@ -47,6 +50,7 @@ static void triangulate(const struct simplifier *simplifier, const struct star *
                 float here_m =
                     samples_triangle_error(&simplifier->samples, &star->at[i], &star->at[k], &star->at[j]).max_m;
                 if (fmaxf(both_m, here_m) >= polygon->error_m[i][j]) continue;
+                if (!ahead_admits(simplifier, &star->at[i], &star->at[k], &star->at[j], here_m)) continue;
                 polygon->error_m[i][j] = fmaxf(both_m, here_m);
                 polygon->apex[i][j] = (unsigned char)k;
             }

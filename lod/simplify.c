@@ -1,5 +1,7 @@
 #include "lod/simplify.h"
 
+#include "lod/ahead.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,13 +40,13 @@ static bool is_thick_in_codes(const struct code_frame *frame, const struct sampl
     return area2 * POSITION_TOP > frame->span * (reach + 2);
 }
 
-bool simplify_positive(const struct simplify_options *options, const struct sample *a, const struct sample *b,
+bool simplify_positive(const struct code_frame *codes, const struct sample *a, const struct sample *b,
                        const struct sample *c) {
     int64_t area2 = sample_area2(a, b, c);
     if (area2 <= 0) return false;
-    if (options->codes.span == 0 || is_thick_in_codes(&options->codes, a, b, c, area2)) return true;
-    struct sample codes[3] = {code_of(&options->codes, a), code_of(&options->codes, b), code_of(&options->codes, c)};
-    return sample_area2(&codes[0], &codes[1], &codes[2]) > 0;
+    if (codes->span == 0 || is_thick_in_codes(codes, a, b, c, area2)) return true;
+    struct sample coded[3] = {code_of(codes, a), code_of(codes, b), code_of(codes, c)};
+    return sample_area2(&coded[0], &coded[1], &coded[2]) > 0;
 }
 
 /* The triangles of a closed star that survive a collapse into ring[target] are those of index target + 1 up to
@@ -53,10 +55,10 @@ static inline int32_t around(int32_t index, int32_t degree) {
     return index >= degree ? index - degree : index;
 }
 
-static bool stays_positive(const struct simplify_options *options, const struct star *star, int32_t target) {
+static bool stays_positive(const struct code_frame *codes, const struct star *star, int32_t target) {
     for (int32_t j = 1; j < star->degree - 1; j++) {
         int32_t i = around(target + j, star->degree);
-        if (!simplify_positive(options, &star->at[target], &star->at[i], &star->at[i + 1])) return false;
+        if (!simplify_positive(codes, &star->at[target], &star->at[i], &star->at[i + 1])) return false;
     }
     return true;
 }
@@ -102,7 +104,7 @@ static int propose(const struct simplifier *simplifier, const struct star *star,
     for (int32_t k = 0; k < star->degree; k++) {
         double cost = quadric_cost(star, at, drop, &planes, k);
         if (count == CANDIDATES && cost >= costs[count - 1]) continue;
-        if (!stays_positive(&simplifier->options, star, k)) continue;
+        if (!stays_positive(&simplifier->options.codes, star, k)) continue;
         int place = count < CANDIDATES ? count++ : CANDIDATES - 1;
         for (; place > 0 && costs[place - 1] > cost; place--) {
             costs[place] = costs[place - 1];
@@ -112,6 +114,17 @@ static int propose(const struct simplifier *simplifier, const struct star *star,
         proposed[place] = k;
     }
     return count;
+}
+
+/* Whether the rungs to come stay within reach. */
+static bool keeps_way_open(const struct simplifier *simplifier, const struct star *star, int32_t target,
+                           const struct triangle_error errors[MESH_MAX_DEGREE]) {
+    if (simplifier->options.ahead == NULL) return true;
+    for (int32_t j = 1; j < star->degree - 1; j++) {
+        int32_t i = around(target + j, star->degree);
+        if (!ahead_admits(simplifier, &star->at[target], &star->at[i], &star->at[i + 1], errors[j].max_m)) return false;
+    }
+    return true;
 }
 
 /* Looks at one target; improves `best` when it is admissible and cheaper. */
@@ -128,6 +141,10 @@ static void measure_target(const struct simplifier *simplifier, const struct sta
             return;
         }
         if (sum >= best->growth) return;
+    }
+    if (!keeps_way_open(simplifier, star, target, errors)) {
+        best->refused_m = simplifier->tolerance_m; /* the next rung may allow it */
+        return;
     }
     best->target = target;
     best->growth = sum;

@@ -24,10 +24,13 @@ struct simplify_observer {
     void (*remove)(void *context, const struct star *star);
 };
 
+struct ahead;
+
 struct simplify_options {
     int64_t locked_step;     /* vertices whose x and y are multiples of it never go; 0: none are locked */
     struct code_frame codes; /* triangles stay positive in these codes too; span 0: codes are not looked at */
     const struct simplify_observer *observer; /* NULL: nobody watches */
+    const struct ahead *ahead;                /* rungs that must stay within reach (lod/ahead.h); NULL: none */
 };
 
 struct simplifier {
@@ -72,9 +75,9 @@ void mesh_measure(struct mesh *mesh, const struct samples *samples);
 /* Triangles around a vertex. */
 int32_t mesh_degree(const struct mesh *mesh, int32_t vertex);
 
-/* Whether (a, b, c) is counter-clockwise with a positive area, also in the position codes of the options: rounding to
- * codes turns thin triangles over, even where codes are finer than the lattice. */
-bool simplify_positive(const struct simplify_options *options, const struct sample *a, const struct sample *b,
+/* Whether (a, b, c) is counter-clockwise with a positive area, also in position codes (span 0: they are not looked
+ * at): rounding to codes turns thin triangles over, even where codes are finer than the lattice. */
+bool simplify_positive(const struct code_frame *codes, const struct sample *a, const struct sample *b,
                        const struct sample *c);
 
 #endif

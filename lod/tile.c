@@ -314,31 +314,83 @@ failed:
 
 /* ---- any tile ---- */
 
-void tile_set_codes(struct tile *tile, struct code_frame codes) {
-    tile->simplifier.options.codes = codes;
-    /* a code is off by half a step at the most */
-    tile->simplifier.samples.rounding_steps = (float)(0.5 * (double)codes.span / POSITION_TOP);
+/* A code is off by half a step at the most. */
+static float rounding_steps(struct code_frame codes) {
+    return (float)(0.5 * (double)codes.span / POSITION_TOP);
 }
 
-static void reduce_lines(struct tile *tile, double tolerance_m) {
-    const struct code_frame *codes = &tile->simplifier.options.codes;
+void tile_set_codes(struct tile *tile, struct code_frame codes) {
+    tile->simplifier.options.codes = codes;
+    tile->simplifier.samples.rounding_steps = rounding_steps(codes);
+}
+
+/* `codes`: NULL when the rung is not written. */
+static void reduce_lines(struct tile *tile, struct border_line lines[SIDE_COUNT], double tolerance_m,
+                         const struct code_frame *codes) {
     for (int side = 0; side < SIDE_COUNT; side++) {
         bool horizontal = side == SIDE_SOUTH || side == SIDE_NORTH;
-        border_reduce(&tile->lines[side], BORDER_SHARE * tolerance_m, tile->geometry.locked_step);
-        border_separate_codes(&tile->lines[side], codes->span, horizontal ? codes->x : codes->y);
+        border_reduce(&lines[side], BORDER_SHARE * tolerance_m, tile->geometry.locked_step);
+        if (codes != NULL) border_separate_codes(&lines[side], codes->span, horizontal ? codes->x : codes->y);
     }
 }
 
-enum scree_status tile_advance(struct tile *tile, double tolerance_m, struct scree_error *error) {
-    float bound_m = (float)tolerance_m;
-    tile->simplifier.samples.rounding_limit_m = ROUNDING_SHARE * bound_m;
-    reduce_lines(tile, tolerance_m);
+/* The first rung to come has come, as far as the border goes. */
+static void look_further(struct tile *tile) {
+    tile->ahead.next++;
+    if (tile->ahead.next == tile->ahead.count) tile->simplifier.options.ahead = NULL;
+}
+
+static enum scree_status advance(struct tile *tile, double tolerance_m, bool written, struct scree_error *error) {
+    struct simplifier *simplifier = &tile->simplifier;
+    bool looks_ahead = simplifier->options.ahead != NULL;
+    float bound_m = looks_ahead ? tile->ahead.rungs[tile->ahead.next].tolerance_m : (float)tolerance_m;
+    simplifier->samples.rounding_limit_m = looks_ahead && !written ? 0 : ROUNDING_SHARE * bound_m;
+    reduce_lines(tile, tile->lines, tolerance_m, written ? &simplifier->options.codes : NULL);
     enum scree_status status =
-        border_collapse(&tile->simplifier, tile->lines, tile->geometry.columns, tile->geometry.rows, bound_m, error);
+        border_collapse(simplifier, tile->lines, tile->geometry.columns, tile->geometry.rows, bound_m, error);
     if (status != SCREE_OK) return status;
-    simplify_interior(&tile->simplifier, bound_m);
-    if (code_collapse(&tile->simplifier) == 0) return SCREE_OK;
+    if (looks_ahead) look_further(tile);
+    simplify_interior(simplifier, bound_m);
+    if (!written || code_collapse(simplifier) == 0) return SCREE_OK;
     return scree_fail(error, SCREE_E_LIMIT, "a tile's triangles are too small for the position codes of a coarse zoom");
+}
+
+enum scree_status tile_advance(struct tile *tile, double tolerance_m, struct scree_error *error) {
+    return advance(tile, tolerance_m, true, error);
+}
+
+enum scree_status tile_advance_between(struct tile *tile, double tolerance_m, struct scree_error *error) {
+    return advance(tile, tolerance_m, false, error);
+}
+
+/* The rounding of positions comes with a written rung; room is left for it in the rungs before. */
+static float bound_of(const struct tile_rung *rung) {
+    if (rung->codes.span != 0) return (float)rung->tolerance_m;
+    const struct tile_rung *written = rung;
+    while (written->codes.span == 0) written++;
+    return fminf((float)rung->tolerance_m, (1 - ROUNDING_SHARE) * (float)written->tolerance_m);
+}
+
+enum scree_status tile_look_ahead(struct tile *tile, const struct tile_rung *rungs, int count,
+                                  struct scree_error *error) {
+    struct ahead *ahead = &tile->ahead;
+    ahead->rungs = scree_allocate(tile->memory, (size_t)count, sizeof *ahead->rungs, "rungs to come", error);
+    if (ahead->rungs == NULL) return SCREE_E_MEMORY;
+    ahead->columns = tile->geometry.columns;
+    ahead->rows = tile->geometry.rows;
+    ahead->count = count;
+    for (int i = 0; i < count; i++) {
+        struct ahead_rung *rung = &ahead->rungs[i];
+        rung->tolerance_m = bound_of(&rungs[i]);
+        rung->codes = rungs[i].codes;
+        rung->samples = tile->samples;
+        rung->samples.rounding_steps = rounding_steps(rung->codes);
+        rung->samples.rounding_limit_m = ROUNDING_SHARE * rung->tolerance_m;
+        memcpy(rung->lines, i == 0 ? tile->lines : rung[-1].lines, sizeof rung->lines);
+        reduce_lines(tile, rung->lines, rungs[i].tolerance_m, rung->codes.span != 0 ? &rung->codes : NULL);
+    }
+    tile->simplifier.options.ahead = ahead;
+    return SCREE_OK;
 }
 
 double tile_max_error_m(const struct tile *tile) {
@@ -367,6 +419,7 @@ void tile_release(struct tile *tile) {
     scree_release(tile->memory, tile->extremes);
     scree_release(tile->memory, tile->posts);
     scree_release(tile->memory, tile->east_drop_m);
+    scree_release(tile->memory, tile->ahead.rungs);
     mesh_release(tile->memory, &tile->mesh);
     memset(tile, 0, sizeof *tile);
 }

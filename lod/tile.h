@@ -6,6 +6,7 @@
 #ifndef SCREE_LOD_TILE_H
 #define SCREE_LOD_TILE_H
 
+#include "lod/ahead.h"
 #include "lod/border_collapse.h"
 #include "lod/simplify.h"
 #include "lod/slopes.h"
@@ -29,6 +30,7 @@ struct tile {
     struct samples samples;
     struct simplifier simplifier;
     struct border_line lines[SIDE_COUNT];
+    struct ahead ahead;       /* rungs that must stay within reach */
     struct slope_grid slopes; /* at the corners of the cells */
     float *east_drop_m;
     float *posts;             /* cell_span 1: else NULL */
@@ -75,6 +77,21 @@ void tile_set_codes(struct tile *tile, struct code_frame codes);
 
 /* Takes the tile down to a tolerance: first its borders, then its interior. Tolerances must not fall. */
 enum scree_status tile_advance(struct tile *tile, double tolerance_m, struct scree_error *error);
+
+/* The same for a rung on the way to a written one: triangles that position codes turn over are left to that one. */
+enum scree_status tile_advance_between(struct tile *tile, double tolerance_m, struct scree_error *error);
+
+/* A rung to come. */
+struct tile_rung {
+    double tolerance_m;
+    struct code_frame codes; /* of the written form; span 0: it is not written */
+};
+
+/* For a tile that still is its full grid of posts: the coming rungs are exactly these, the last a written
+ * one. Every rung leaves the next ones within reach, so all of them are within their tolerances,
+ * whatever their border lines drop. */
+enum scree_status tile_look_ahead(struct tile *tile, const struct tile_rung *rungs, int count,
+                                  struct scree_error *error);
 
 /* What holds now: the largest error over all samples, and the mean minimum quadric error. */
 double tile_max_error_m(const struct tile *tile);

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define OCTAVE   4 /* rungs */
 #define UNIT_M   0.0625
 #define MAX_SIDE 257
 
@@ -102,6 +103,43 @@ static void neighbours_meet_at_every_rung(void) {
     tile_release(&north);
     tile_release(&east);
     tile_release(&tile);
+    CU_ASSERT_EQUAL(memory.used_bytes, 0);
+}
+
+/* Two octaves down to a written rung, one more to that of the zoom above: what border lines drop never makes a tile
+ * pass a tolerance. A tile that does not look ahead does pass some. */
+static void what_is_looked_ahead_at_is_within_reach(void) {
+    static struct tile tile, blind;
+    struct scree_memory memory = {0};
+    struct tile_rung rungs[3 * OCTAVE + 1] = {0};
+    const int count = 3 * OCTAVE + 1;
+    int blind_passes = 0;
+    for (int i = 0; i < count; i++) rungs[i].tolerance_m = exp2((double)i / OCTAVE);
+    rungs[2 * OCTAVE].codes = (struct code_frame){256, 0, 0};
+    rungs[count - 1].codes = (struct code_frame){512, 256, 0};
+    for (int32_t columns = 256; columns > 1; columns /= 17) {
+        CU_ASSERT_EQUAL_FATAL(tile_of_field(&memory, 512, 256, columns, 256, &tile), SCREE_OK);
+        CU_ASSERT_EQUAL_FATAL(tile_of_field(&memory, 512, 256, columns, 256, &blind), SCREE_OK);
+        CU_ASSERT_EQUAL_FATAL(tile_look_ahead(&tile, rungs, count, NULL), SCREE_OK);
+        for (int i = 0; i < count; i++) {
+            bool written = rungs[i].codes.span != 0;
+            struct scree_error error = {0};
+            if (i == 0) tile_set_codes(&tile, rungs[2 * OCTAVE].codes);
+            if (i == 2 * OCTAVE + 1) tile_set_codes(&tile, rungs[count - 1].codes);
+            CU_ASSERT_EQUAL((written ? tile_advance : tile_advance_between)(&tile, rungs[i].tolerance_m, &error),
+                            SCREE_OK);
+            if (error.status != SCREE_OK) printf("\n    %s\n", error.text);
+            check(&tile);
+            CU_ASSERT(tile_max_error_m(&tile) <= rungs[i].tolerance_m);
+            CU_ASSERT_EQUAL(tile_advance_between(&blind, rungs[i].tolerance_m, NULL), SCREE_OK);
+            blind_passes += tile_max_error_m(&blind) > rungs[i].tolerance_m;
+            check_common_border(&tile, SIDE_EAST, &blind, SIDE_EAST);
+        }
+        CU_ASSERT(tile.mesh.live_triangles < 1.02 * blind.mesh.live_triangles + 20);
+        tile_release(&blind);
+        tile_release(&tile);
+    }
+    CU_ASSERT(blind_passes > 0);
     CU_ASSERT_EQUAL(memory.used_bytes, 0);
 }
 
@@ -378,11 +416,10 @@ static void coarse_codes_leave_positive_triangles(void) {
     advance(&tile, 3);
     advance(&east, 3);
     check_common_border(&tile, SIDE_EAST, &east, SIDE_WEST);
-    const struct simplify_options options = {.codes = frame};
     for (int32_t t = 0; t < tile.mesh.triangle_count; t++) {
         const int32_t *corner = tile.mesh.triangles[t].vertex;
         if (corner[0] == MESH_NONE) continue;
-        CU_ASSERT_TRUE(simplify_positive(&options, &tile.mesh.vertices[corner[0]].at, &tile.mesh.vertices[corner[1]].at,
+        CU_ASSERT_TRUE(simplify_positive(&frame, &tile.mesh.vertices[corner[0]].at, &tile.mesh.vertices[corner[1]].at,
                                          &tile.mesh.vertices[corner[2]].at));
     }
     CU_ASSERT(tile.mesh.live_vertices > 100);
@@ -519,6 +556,7 @@ int suite_tile(void) {
     CU_pSuite suite = CU_add_suite("tile", NULL, NULL);
     if (suite == NULL) return 1;
     CU_ADD_TEST(suite, neighbours_meet_at_every_rung);
+    CU_ADD_TEST(suite, what_is_looked_ahead_at_is_within_reach);
     CU_ADD_TEST(suite, a_parent_is_the_union_of_its_children);
     CU_ADD_TEST(suite, parents_go_on_and_keep_extremes);
     CU_ADD_TEST(suite, children_that_do_not_meet_are_refused);
