@@ -1,5 +1,6 @@
-/* scree info: what is in a terrain, or in one tile. */
+/* scree info: what is in static tiles and streams, or in one of either. */
 #include "src/command.h"
+#include "src/info_stream_io.h"
 #include "src/json_text.h"
 #include "src/terrain_path_io.h"
 #include "src/terrain_set_io.h"
@@ -9,10 +10,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char help[] = "Usage: scree info OUT|TILE.terrain [--format json]\n"
-                           "Tells what a terrain product holds at each zoom, as its layer.json has it, or what a tile\n"
-                           "of any producer holds.\n\n"
-                           "  --format json   for machines\n";
+static const char help[] =
+    "Usage: scree info OUT|TILE.scree|TILE.terrain [--format json]\n"
+    "Tells what a terrain holds at each zoom, as its manifests have it: static tiles (layer.json), streams\n"
+    "(scree.json) or both. Of one stream: its rungs, with SVO, max error, counts, and the bytes that a client has "
+    "read\n"
+    "when it shows them; of a static tile, of any producer, what it holds.\n\n"
+    "  --format json   for machines; streams are the member \"streams\"\n\n"
+    "A stream that lacks its end is told of: the rungs that are whole can be played.\n";
 
 static int usage(const char *what, const char *argument) {
     fprintf(stderr, "scree info: %s%s; scree info --help tells how\n", what, argument);
@@ -70,9 +75,9 @@ static void put_zoom(struct json_text *json, const struct terrain_set *set, int 
     json_close(json, '}');
 }
 
+/* The members of the terrain's object. */
 static void put_set(struct json_text *json, const struct terrain_set *set) {
     const struct layer_info *layer = &set->layer;
-    json_open(json, '{');
     json_key(json, "terrain");
     json_string(json, set->folder);
     json_key(json, "profile");
@@ -98,7 +103,6 @@ static void put_set(struct json_text *json, const struct terrain_set *set) {
     for (int zoom = 0; zoom <= MAX_ZOOM; zoom++)
         if (layer->zooms[zoom].is_told || set->tiles[zoom].count != 0) put_zoom(json, set, zoom);
     json_close(json, ']');
-    json_close(json, '}');
 }
 
 static enum scree_status show_set(struct scree_memory *memory, const char *path, struct json_text *json,
@@ -194,11 +198,37 @@ static enum scree_status show_tile(struct scree_memory *memory, const char *path
     return SCREE_OK;
 }
 
+/* ---- whatever it is ---- */
+
+/* A folder with static tiles, streams, or both. */
+static enum scree_status show_folder(struct scree_memory *memory, const char *path, struct json_text *json,
+                                     struct scree_error *error) {
+    bool has_terrain = product_is_there(path, PRODUCT_TERRAIN), has_streams = product_is_there(path, PRODUCT_STREAM);
+    enum scree_status status = SCREE_OK;
+    if (!has_terrain && !has_streams) return product_fail_none(path, error);
+    if (json != NULL) json_open(json, '{');
+    if (has_terrain) status = show_set(memory, path, json, error);
+    if (has_streams && status == SCREE_OK) {
+        if (json != NULL) json_key(json, "streams");
+        if (json == NULL && has_terrain) printf("\n");
+        status = info_stream_set(memory, path, json, error);
+    }
+    if (json != NULL) json_close(json, '}');
+    return status;
+}
+
 static enum scree_status show(const char *path, bool as_json, struct scree_error *error) {
     struct scree_memory memory = {0};
-    struct json_text json = {0};
-    enum scree_status status = terrain_path_is_tile(path) ? show_tile(&memory, path, as_json ? &json : NULL, error)
-                                                          : show_set(&memory, path, as_json ? &json : NULL, error);
+    struct json_text json = {0}, *to = as_json ? &json : NULL;
+    enum scree_status status;
+    if (terrain_path_is_tile(path)) {
+        status = show_tile(&memory, path, to, error);
+    } else if (stream_path_is_tile(path)) {
+        status = info_stream_file(&memory, path, to, error);
+    } else {
+        status = show_folder(&memory, path, to, error);
+    }
+    if (status != SCREE_OK) json_text_free(&json);
     if (status != SCREE_OK || !as_json) return status;
     char *text = json_text_take(&json);
     if (text == NULL) return scree_fail(error, SCREE_E_MEMORY, "out of memory");
@@ -228,7 +258,7 @@ int command_info(int argc, char **argv) {
             path = argv[at];
         }
     }
-    if (path == NULL) return usage("which terrain? Name a folder or a .terrain file", "");
+    if (path == NULL) return usage("which terrain? Name a folder, a .scree or a .terrain file", "");
     if (show(path, as_json, &error) == SCREE_OK) return EXIT_DONE;
     fprintf(stderr, "scree info: %s\n", error.text);
     return EXIT_FAILED;

@@ -65,41 +65,83 @@ static enum scree_status reserve_triangles(struct scree_memory *memory, struct e
     return SCREE_OK;
 }
 
-/* The vertex in codes of the whole root; one name for each place on the globe. */
-static struct extract_vertex vertex_of(const struct extract_mesh *mesh, struct tile_id id,
-                                       const struct decoded_tile *tile, uint32_t i) {
-    struct extract_vertex vertex = {.x = (int64_t)id.x * DECODED_TOP + tile->u[i],
-                                    .y = (int64_t)id.y * DECODED_TOP + tile->v[i],
-                                    .height_m = decoded_height_m(tile, i)};
-    if (mesh->lattice->profile == PROFILE_GEODETIC) {
-        int64_t around = (int64_t)lattice_tiles_x(mesh->lattice, mesh->zoom) * DECODED_TOP;
-        int64_t pole = (int64_t)lattice_tiles_y(mesh->lattice, mesh->zoom) * DECODED_TOP;
-        if (vertex.x == around || vertex.y == 0 || vertex.y == pole) vertex.x = 0;
+enum scree_status extract_mesh_reserve(struct scree_memory *memory, struct extract_mesh *mesh, uint32_t vertices,
+                                       uint32_t triangles, struct scree_error *error) {
+    enum scree_status status = reserve_vertices(memory, mesh, vertices, error);
+    return status == SCREE_OK ? reserve_triangles(memory, mesh, triangles, error) : status;
+}
+
+int64_t extract_mesh_around(const struct extract_mesh *mesh) {
+    if (mesh->lattice->profile != PROFILE_GEODETIC) return 0;
+    int zoom = mesh->in_posts ? 0 : mesh->zoom;
+    int64_t tile = mesh->in_posts ? lattice_tile_span(mesh->lattice, zoom) : DECODED_TOP;
+    return (int64_t)lattice_tiles_x(mesh->lattice, zoom) * tile;
+}
+
+/* Its number in the mesh. Each place on the globe has one name: 0 is 360 degrees, and a pole is one place. */
+static uint32_t number_of(struct extract_mesh *mesh, struct extract_vertex vertex) {
+    int64_t around = extract_mesh_around(mesh), pole = around / 2;
+    if (around != 0 && (vertex.x == around || vertex.y == 0 || vertex.y == pole)) vertex.x = 0;
+    size_t slot = find_slot(mesh, &vertex);
+    if (mesh->table[slot] == 0) {
+        mesh->vertices[mesh->vertex_count++] = vertex;
+        mesh->table[slot] = mesh->vertex_count;
     }
-    return vertex;
+    return mesh->table[slot] - 1;
+}
+
+/* A triangle without an area on the globe is left out. */
+static void add_triangle(struct extract_mesh *mesh, uint32_t a, uint32_t b, uint32_t c) {
+    if (a == b || b == c || c == a) return;
+    memcpy(mesh->corners + 3 * (size_t)mesh->triangle_count++, (uint32_t[3]){a, b, c}, 3 * sizeof *mesh->corners);
 }
 
 enum scree_status extract_mesh_add(struct scree_memory *memory, struct extract_mesh *mesh, struct tile_id id,
                                    const struct decoded_tile *tile, struct scree_error *error) {
     uint32_t *number = scree_allocate(memory, tile->vertex_count, sizeof *number, "vertex numbers", error);
     enum scree_status status = number == NULL ? SCREE_E_MEMORY : SCREE_OK;
-    if (status == SCREE_OK) status = reserve_vertices(memory, mesh, tile->vertex_count, error);
-    if (status == SCREE_OK) status = reserve_triangles(memory, mesh, tile->triangle_count, error);
+    if (status == SCREE_OK)
+        status = extract_mesh_reserve(memory, mesh, tile->vertex_count, tile->triangle_count, error);
     if (status != SCREE_OK) goto cleanup;
-    for (uint32_t i = 0; i < tile->vertex_count; i++) {
-        struct extract_vertex vertex = vertex_of(mesh, id, tile, i);
-        size_t slot = find_slot(mesh, &vertex);
-        if (mesh->table[slot] == 0) {
-            mesh->vertices[mesh->vertex_count++] = vertex;
-            mesh->table[slot] = mesh->vertex_count;
-        }
-        number[i] = mesh->table[slot] - 1;
-    }
+    for (uint32_t i = 0; i < tile->vertex_count; i++)
+        number[i] = number_of(mesh, (struct extract_vertex){.x = (int64_t)id.x * DECODED_TOP + tile->u[i],
+                                                            .y = (int64_t)id.y * DECODED_TOP + tile->v[i],
+                                                            .height_m = decoded_height_m(tile, i)});
     for (uint32_t t = 0; t < tile->triangle_count; t++) {
-        const uint32_t *old = tile->corners + 3 * (size_t)t;
-        uint32_t *corners = mesh->corners + 3 * (size_t)mesh->triangle_count;
-        for (int k = 0; k < 3; k++) corners[k] = number[old[k]];
-        if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0]) mesh->triangle_count++;
+        const uint32_t *corners = tile->corners + 3 * (size_t)t;
+        add_triangle(mesh, number[corners[0]], number[corners[1]], number[corners[2]]);
+    }
+cleanup:
+    scree_release(memory, number);
+    return status;
+}
+
+static bool is_within(const struct extract_posts *posts, uint32_t i) {
+    const struct lattice_window *only = posts->only;
+    int64_t x = posts->x + posts->vertices[i].x, y = posts->y + posts->vertices[i].y;
+    return only == NULL || (x >= only->x && x <= only->x + only->columns && y >= only->y && y <= only->y + only->rows);
+}
+
+enum scree_status extract_mesh_add_posts(struct scree_memory *memory, struct extract_mesh *mesh,
+                                         const struct extract_posts *posts, struct scree_error *error) {
+    uint32_t *number = scree_allocate(memory, posts->vertex_count, sizeof *number, "vertex numbers", error);
+    enum scree_status status = number == NULL ? SCREE_E_MEMORY : SCREE_OK;
+    if (status == SCREE_OK)
+        status = extract_mesh_reserve(memory, mesh, posts->vertex_count, posts->triangle_count, error);
+    if (status != SCREE_OK) goto cleanup;
+    memset(number, 0xff, posts->vertex_count * sizeof *number); /* UINT32_MAX: none yet */
+    for (uint32_t t = 0; t < posts->triangle_count; t++) {
+        const uint32_t *corners = posts->corners + 3 * (size_t)t;
+        if (!is_within(posts, corners[0]) || !is_within(posts, corners[1]) || !is_within(posts, corners[2])) continue;
+        for (int k = 0; k < 3; k++) {
+            const struct scree_vertex *vertex = &posts->vertices[corners[k]];
+            if (number[corners[k]] != UINT32_MAX) continue;
+            number[corners[k]] =
+                number_of(mesh, (struct extract_vertex){.x = posts->x + vertex->x,
+                                                        .y = posts->y + vertex->y,
+                                                        .height_m = vertex->height * posts->height_unit_m});
+        }
+        add_triangle(mesh, number[corners[0]], number[corners[1]], number[corners[2]]);
     }
 cleanup:
     scree_release(memory, number);
@@ -125,7 +167,7 @@ static void take_origin_off(struct extract_mesh *mesh) {
 enum scree_status extract_mesh_place(struct scree_memory *memory, struct extract_mesh *mesh,
                                      const struct horizon_frame *frame, struct scree_error *error) {
     const struct lattice *lattice = mesh->lattice;
-    double step = (double)lattice_tile_span(lattice, mesh->zoom) / DECODED_TOP; /* lattice steps a code */
+    double step = mesh->in_posts ? 1 : (double)lattice_tile_span(lattice, mesh->zoom) / DECODED_TOP; /* of a code */
     scree_release(memory, mesh->xyz);
     mesh->xyz = scree_allocate(memory, mesh->vertex_count, 3 * sizeof *mesh->xyz, "the mesh's coordinates", error);
     if (mesh->xyz == NULL) return SCREE_E_MEMORY;

@@ -59,6 +59,15 @@ enum scree_status product_find(const char *path, enum product_kind kind, char fo
     return SCREE_OK;
 }
 
+enum scree_status product_fail_none(const char *path, struct scree_error *error) {
+    struct stat about;
+    if (stat(path, &about) != 0) return scree_fail(error, SCREE_E_IO, "%s: %s", path, strerror(errno));
+    return scree_fail(error, SCREE_E_IO,
+                      "%s: there are neither static tiles (layer.json) nor streams (scree.json) in it; name the folder "
+                      "that scree build wrote to",
+                      path);
+}
+
 void product_manifest_path(const char *folder, enum product_kind kind, char path[PRODUCT_PATH_BYTES]) {
     snprintf(path, PRODUCT_PATH_BYTES, "%s/%s", folder, names[kind].manifest);
 }

@@ -20,6 +20,9 @@ enum scree_status product_find(const char *path, enum product_kind kind, char fo
 /* Whether there is one. */
 bool product_is_there(const char *path, enum product_kind kind);
 
+/* The line for a path with neither product; returns SCREE_E_IO. */
+enum scree_status product_fail_none(const char *path, struct scree_error *error);
+
 /* The path of a folder's manifest, and of a tile. */
 #define PRODUCT_PATH_BYTES (PRODUCT_FOLDER_BYTES + 64)
 void product_manifest_path(const char *folder, enum product_kind kind, char path[PRODUCT_PATH_BYTES]);
