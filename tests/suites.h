@@ -28,5 +28,6 @@ SUITE(raster_mosaic)
 SUITE(extract)
 SUITE(against)
 SUITE(pyramid)
+SUITE(playback)
 
 #undef SUITE
