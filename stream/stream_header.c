@@ -30,6 +30,11 @@ enum {
     MAX_HEIGHT_EXPONENT = 30
 };
 
+/* What keeps coordinates in the range of the floats that viewers draw with. */
+#define ROUNDING_DEG   1e-6
+#define MAX_COORDINATE 1e15
+#define MAX_SIDE_M     1e9
+
 /* What the first bytes say of the header's own layout. */
 struct layout {
     uint32_t header_bytes, rung_count, extension_bytes;
@@ -180,6 +185,27 @@ static enum scree_status skip_extensions(const unsigned char *bytes, size_t size
     return SCREE_OK;
 }
 
+/* Where a tile ends, in degrees or units of the CRS. */
+static double east_of(const struct scree_stream_header *header) {
+    return header->west + header->columns * header->spacing_x;
+}
+static double north_of(const struct scree_stream_header *header) {
+    return header->south + header->rows * header->spacing_y;
+}
+
+static bool lies_on_globe(const struct scree_stream_header *header) {
+    return header->spacing_x > 0 && header->spacing_y > 0 && header->west >= -180 - ROUNDING_DEG &&
+           east_of(header) <= 180 + ROUNDING_DEG && header->south >= -90 - ROUNDING_DEG &&
+           north_of(header) <= 90 + ROUNDING_DEG && header->metres_x == 0 && header->metres_y == 0;
+}
+
+static bool lies_in_plane(const struct scree_stream_header *header) {
+    return header->spacing_x > 0 && header->spacing_y > 0 && header->west >= -MAX_COORDINATE &&
+           east_of(header) <= MAX_COORDINATE && header->south >= -MAX_COORDINATE &&
+           north_of(header) <= MAX_COORDINATE && header->metres_x > 0 && header->metres_y > 0 &&
+           header->columns * header->metres_x <= MAX_SIDE_M && header->rows * header->metres_y <= MAX_SIDE_M;
+}
+
 static enum scree_status check_place(const struct scree_stream_header *header, struct scree_error *error) {
     if (header->profile != SCREE_GEODETIC && header->profile != SCREE_LOCAL)
         return scree_fail_at(error, SCREE_E_UNSUPPORTED, PROFILE_AT,
@@ -197,16 +223,10 @@ static enum scree_status check_place(const struct scree_stream_header *header, s
     if (header->height_exponent < -MAX_HEIGHT_EXPONENT || header->height_exponent > MAX_HEIGHT_EXPONENT)
         return scree_fail_at(error, SCREE_E_CORRUPT, EXPONENT_AT, "the stream's height step of 2^%d m cannot be",
                              (int)header->height_exponent);
-    bool spaced = header->spacing_x > 0 && header->spacing_y > 0 &&
-                  isfinite(header->west + header->columns * header->spacing_x) &&
-                  isfinite(header->south + header->rows * header->spacing_y);
-    bool measured = header->profile == SCREE_GEODETIC ? header->metres_x == 0 && header->metres_y == 0
-                                                      : header->metres_x > 0 && isfinite(header->metres_x) &&
-                                                            header->metres_y > 0 && isfinite(header->metres_y);
-    if (!spaced || !measured)
+    if (!(header->profile == SCREE_GEODETIC ? lies_on_globe(header) : lies_in_plane(header)))
         return scree_fail_at(error, SCREE_E_CORRUPT, WEST_AT,
-                             "the stream's tile has no place: coordinates or spacings "
-                             "are not finite, or not positive");
+                             "the stream's tile has no place: its coordinates or spacings are not finite, not positive "
+                             "or too large");
     return SCREE_OK;
 }
 

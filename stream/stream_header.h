@@ -1,8 +1,9 @@
 /* The header of a stream as bytes. Pure.
  *
  * What a reader lets pass is consistent, so that whoever decodes may size things by it:
- * - the tile: a zoom of 0 .. 30 and a place in it, 1 .. SCREE_MAX_TILE_STEPS columns and rows, finite coordinates,
- *   positive spacings, heights of 2^-30 .. 2^30 m;
+ * - the tile: a zoom of 0 .. 30 and a number of it, 1 .. SCREE_MAX_TILE_STEPS columns and rows, positive spacings,
+ *   height steps of 2^-30 .. 2^30 m; geodetic: within -180 .. 180 and -90 .. 90 degrees; local: coordinates within
+ *   +-10^15 units and sides of at most 10^9 m;
  * - the base mesh triangulates a rectangle: at least 4 vertices, and with v vertices v - 2 .. 2 v - 6 triangles;
  * - an increment adds between as many and twice as many triangles as vertices;
  * - the finest mesh has at most SCREE_MAX_VERTICES vertices, and no more than the tile has posts;

@@ -101,9 +101,24 @@ static void a_geodetic_tile_has_no_metres(void) {
     header.zoom = 0;
     header.tile_x = 1;
     header.tile_y = 0;
+    header.west = 0;
+    header.south = -90;
+    header.spacing_x = header.spacing_y = 180.0 / 256;
+    header.rows = 256;
     size_t size_bytes = stream_header_write(&header, bytes, sizeof bytes);
     CU_ASSERT_EQUAL(stream_header_read(bytes, size_bytes, &read, NULL), SCREE_OK);
     same_headers(&header, &read);
+    header.west = 1; /* ends at 181 degrees */
+    stream_header_write(&header, bytes, sizeof bytes);
+    CU_ASSERT_EQUAL(stream_header_read(bytes, size_bytes, &read, NULL), SCREE_E_CORRUPT);
+    header.west = 0;
+    header.south = -91;
+    stream_header_write(&header, bytes, sizeof bytes);
+    CU_ASSERT_EQUAL(stream_header_read(bytes, size_bytes, &read, NULL), SCREE_E_CORRUPT);
+    header.south = -90;
+    header.metres_x = 1;
+    stream_header_write(&header, bytes, sizeof bytes);
+    CU_ASSERT_EQUAL(stream_header_read(bytes, size_bytes, &read, NULL), SCREE_E_CORRUPT);
 }
 
 static void a_flat_tile_may_add_nothing(void) {
@@ -238,7 +253,7 @@ static void places_that_cannot_be_are_refused(void) {
     for (size_t at_bytes = 28; at_bytes <= 32; at_bytes += 4) { /* columns, rows */
         CU_ASSERT_EQUAL(read_altered(at_bytes, 4, 0), SCREE_E_CORRUPT);
         CU_ASSERT_EQUAL(read_altered(at_bytes, 4, UINT32_MAX), SCREE_E_CORRUPT);
-        CU_ASSERT_EQUAL(read_altered(at_bytes, 4, SCREE_MAX_TILE_STEPS), SCREE_OK);
+        CU_ASSERT_EQUAL(read_altered(at_bytes, 4, 1 << 24), SCREE_OK);
         CU_ASSERT_EQUAL(read_altered(at_bytes, 4, SCREE_MAX_TILE_STEPS + 1), SCREE_E_CORRUPT);
     }
     for (size_t at_bytes = 36; at_bytes < PLACE_BYTES; at_bytes += 8) {
@@ -250,8 +265,10 @@ static void places_that_cannot_be_are_refused(void) {
         CU_ASSERT_EQUAL(read_altered(at_bytes, 8, bits_of_double(0)), SCREE_E_CORRUPT);
         CU_ASSERT_EQUAL(read_altered(at_bytes, 8, bits_of_double(-1)), SCREE_E_CORRUPT);
     }
-    CU_ASSERT_EQUAL(read_altered(52, 8, bits_of_double(1e308)), SCREE_E_CORRUPT); /* its eastern edge is infinite */
-    CU_ASSERT_EQUAL(read_altered(12, 1, SCREE_GEODETIC), SCREE_E_CORRUPT);        /* has metres */
+    CU_ASSERT_EQUAL(read_altered(52, 8, bits_of_double(1e13)), SCREE_E_CORRUPT); /* its eastern edge is out of reach */
+    CU_ASSERT_EQUAL(read_altered(36, 8, bits_of_double(-1e16)), SCREE_E_CORRUPT);
+    CU_ASSERT_EQUAL(read_altered(68, 8, bits_of_double(1e7)), SCREE_E_CORRUPT); /* as wide as a small star */
+    CU_ASSERT_EQUAL(read_altered(12, 1, SCREE_GEODETIC), SCREE_E_CORRUPT);      /* has metres */
 }
 
 /* The header of three rungs has 100, 120 and 144 vertices, 170, 210 and 258 triangles. */
