@@ -97,7 +97,11 @@ static size_t collect(struct scree_player *player, const unsigned char *bytes, s
 
 static void start_decoding(struct scree_player *player) {
     player->has_header = true;
-    if (stream_decoder_new(&player->memory, &player->header, &player->decoder, &player->failure) != SCREE_OK) return;
+    enum scree_status status = stream_decoder_new(&player->memory, &player->header, &player->decoder, &player->failure);
+    if (status != SCREE_OK) {
+        scree_fail(&player->failure, status, "the stream's decoder cannot be made");
+        return;
+    }
     const struct progressive *progressive = stream_decoded(player->decoder);
     player->playback.progressive = progressive;
     player->border.progressive = progressive;
@@ -132,8 +136,13 @@ static void finish_block(struct scree_player *player) {
                       (unsigned)rung);
         return;
     }
-    if (stream_decode_block(player->decoder, player->bytes, block->size_bytes, failure) != SCREE_OK ||
-        !playback_extend(&player->playback, failure) || !player_border_extend(&player->border, failure) ||
+    enum scree_status status = stream_decode_block(player->decoder, player->bytes, block->size_bytes, failure);
+    if (status != SCREE_OK) {
+        scree_fail_at(failure, status, (int64_t)block->offset_bytes, "block %u of the stream cannot be decoded",
+                      (unsigned)rung);
+        return;
+    }
+    if (!playback_extend(&player->playback, failure) || !player_border_extend(&player->border, failure) ||
         !player_arrays_extend(&player->arrays, &player->border, rung, failure))
         return;
     player->size_bytes = 0;
