@@ -30,5 +30,6 @@ SUITE(extract)
 SUITE(against)
 SUITE(pyramid)
 SUITE(playback)
+SUITE(player)
 
 #undef SUITE
