@@ -1,9 +1,14 @@
-/* scree verify: does a terrain product keep its promises? */
+/* scree verify: do static tiles and streams keep their promises? */
 #include "src/command.h"
+#include "src/json_text.h"
 #include "src/raster_arguments.h"
+#include "src/stream_set_io.h"
 #include "src/terrain_set_io.h"
 #include "src/verify_against_io.h"
 #include "src/verify_print_io.h"
+#include "src/verify_stream_against_io.h"
+#include "src/verify_stream_io.h"
+#include "src/verify_stream_print_io.h"
 #include "src/verify_terrain_io.h"
 
 #include <cpl_conv.h>
@@ -14,11 +19,15 @@
 
 static const char help[] =
     "Usage: scree verify OUT [--against DEM...] [OPTION]...\n"
-    "Decodes every tile of a terrain product, of any producer, and checks what can be checked: the format, the cover\n"
-    "of each tile, borders of neighbours, layer.json against the files; with --against the vertical error as well.\n"
-    "Exits 1 when a promise is broken.\n\n"
-    "  --against DEM...     measure every zoom against the rasters that the terrain was built from\n"
-    "  --format json        for machines\n"
+    "Decodes every static tile, of any producer, and every stream in OUT, and checks what can be checked.\n"
+    "Static tiles: the format, the cover of each tile, borders of neighbours, layer.json against the files.\n"
+    "Streams: the format to the last byte, triangles at every rung, borders of neighbours at every rung that both "
+    "have,\n"
+    "each tile at its finest rung against its children at their coarsest, scree.json against headers and files.\n"
+    "With --against the vertical error as well. Exits 1 when a promise is broken.\n\n"
+    "  --against DEM...     measure against the rasters that the terrain was built from: every zoom of static tiles,\n"
+    "                       every rung of every stream\n"
+    "  --format json        for machines; streams are the member \"streams\"\n"
     "  -q                   print nothing but broken promises\n\n"
     "With --against, as they were given to scree build:\n"
     "  --config KEY VALUE   a GDAL configuration option\n" RASTER_ARGUMENTS_HELP;
@@ -90,28 +99,109 @@ static void end_progress(verify_progress *progress) {
     if (progress != NULL) fputs("\r\033[K", stderr);
 }
 
-static enum scree_status verify(const struct arguments *arguments, struct terrain_set *set,
-                                struct verify_report *report, struct scree_error *error) {
-    struct scree_memory memory = {0};
-    struct against against = {0};
-    verify_progress *progress = isatty(STDERR_FILENO) && !arguments->quiet ? show_progress : NULL;
-    enum scree_status status = terrain_set_open(&memory, arguments->path, set, error);
+/* What was looked at, and what was found. */
+struct terrain_findings {
+    bool is_there;
+    struct terrain_set set;
+    struct verify_report report;
+    struct against against;
+};
+
+struct stream_findings {
+    bool is_there;
+    struct stream_set set;
+    struct verify_report report;
+    struct stream_against against;
+};
+
+struct findings {
+    struct scree_memory memory;
+    struct terrain_findings terrain;
+    struct stream_findings streams;
+};
+
+static enum scree_status verify_terrain_in(const struct arguments *arguments, verify_progress *progress,
+                                           struct scree_memory *memory, struct terrain_findings *found,
+                                           struct scree_error *error) {
+    enum scree_status status = terrain_set_open(memory, arguments->path, &found->set, error);
     if (status != SCREE_OK) return status;
-    status = verify_terrain(&memory, set, progress, "checking tiles", report, error);
+    found->is_there = true;
+    status = verify_terrain(memory, &found->set, progress, "checking tiles", &found->report, error);
     end_progress(progress);
-    if (status == SCREE_OK && arguments->raster.input_count > 0) {
-        status = verify_against(&memory, set, arguments->raster, progress, "measuring", &against, error);
-        end_progress(progress);
-        if (status == SCREE_OK) verify_against_judge(set, &against, report);
-    }
-    if (status == SCREE_OK && arguments->as_json) {
-        status = verify_print_json(set, report, &against, error);
-    } else if (status == SCREE_OK) {
-        verify_print_text(set, report, &against, arguments->quiet);
-    }
-    against_free(&memory, &against);
-    terrain_set_free(&memory, set);
+    if (status != SCREE_OK || arguments->raster.input_count == 0) return status;
+    status = verify_against(memory, &found->set, arguments->raster, progress, "measuring", &found->against, error);
+    end_progress(progress);
+    if (status == SCREE_OK) verify_against_judge(&found->set, &found->against, &found->report);
     return status;
+}
+
+static enum scree_status verify_streams_in(const struct arguments *arguments, verify_progress *progress,
+                                           struct scree_memory *memory, struct stream_findings *found,
+                                           struct scree_error *error) {
+    enum scree_status status = stream_set_open(memory, arguments->path, &found->set, error);
+    if (status != SCREE_OK) return status;
+    found->is_there = true;
+    status = verify_streams(memory, &found->set, progress, "checking streams", &found->report, error);
+    end_progress(progress);
+    if (status != SCREE_OK || arguments->raster.input_count == 0) return status;
+    status = verify_streams_against(memory, &found->set, arguments->raster, progress, "measuring streams",
+                                    &found->against, &found->report, error);
+    end_progress(progress);
+    return status;
+}
+
+static bool all_hold(const struct findings *found) {
+    return report_broken_promises(&found->terrain.report) == 0 && report_broken_promises(&found->streams.report) == 0;
+}
+
+static void print_text(const struct findings *found, bool quiet) {
+    const struct terrain_findings *terrain = &found->terrain;
+    const struct stream_findings *streams = &found->streams;
+    if (terrain->is_there) verify_print_text(&terrain->set, &terrain->report, &terrain->against, quiet);
+    if (terrain->is_there && streams->is_there && !quiet) printf("\n");
+    if (streams->is_there) verify_print_streams(&streams->set, &streams->report, &streams->against, quiet);
+}
+
+static enum scree_status print_json(const struct findings *found, struct scree_error *error) {
+    const struct terrain_findings *terrain = &found->terrain;
+    const struct stream_findings *streams = &found->streams;
+    struct json_text json = {0};
+    json_open(&json, '{');
+    json_key(&json, "ok");
+    json_boolean(&json, all_hold(found));
+    if (terrain->is_there) verify_put_terrain(&json, &terrain->set, &terrain->report, &terrain->against);
+    if (streams->is_there) json_key(&json, "streams");
+    if (streams->is_there) verify_put_streams(&json, &streams->set, &streams->report, &streams->against);
+    json_close(&json, '}');
+    char *text = json_text_take(&json);
+    if (text == NULL) return scree_fail(error, SCREE_E_MEMORY, "no memory for the report");
+    fputs(text, stdout);
+    free(text);
+    return SCREE_OK;
+}
+
+static enum scree_status verify(const struct arguments *arguments, struct findings *found, struct scree_error *error) {
+    const char *path = arguments->path;
+    bool has_terrain = product_is_there(path, PRODUCT_TERRAIN), has_streams = product_is_there(path, PRODUCT_STREAM);
+    verify_progress *progress = isatty(STDERR_FILENO) && !arguments->quiet ? show_progress : NULL;
+    enum scree_status status = SCREE_OK;
+    if (!has_terrain && !has_streams) return product_fail_none(path, error);
+    if (has_terrain) status = verify_terrain_in(arguments, progress, &found->memory, &found->terrain, error);
+    if (has_streams && status == SCREE_OK)
+        status = verify_streams_in(arguments, progress, &found->memory, &found->streams, error);
+    if (status != SCREE_OK) return status;
+    if (arguments->as_json) return print_json(found, error);
+    print_text(found, arguments->quiet);
+    return SCREE_OK;
+}
+
+static void findings_free(struct findings *found) {
+    if (found == NULL) return;
+    against_free(&found->memory, &found->terrain.against);
+    terrain_set_free(&found->memory, &found->terrain.set);
+    stream_against_free(&found->memory, &found->streams.against);
+    stream_set_free(&found->memory, &found->streams.set);
+    free(found);
 }
 
 int command_verify(int argc, char **argv) {
@@ -123,23 +213,21 @@ int command_verify(int argc, char **argv) {
         return EXIT_DONE;
     }
     arguments.inputs = calloc((size_t)argc + 1, sizeof *arguments.inputs);
-    struct terrain_set *set = calloc(1, sizeof *set);
-    struct verify_report *report = calloc(1, sizeof *report);
-    if (arguments.inputs == NULL || set == NULL || report == NULL) {
+    struct findings *found = calloc(1, sizeof *found);
+    if (arguments.inputs == NULL || found == NULL) {
         fputs("scree verify: out of memory\n", stderr);
         goto cleanup;
     }
     code = parse(argc, argv, &arguments);
     if (code != EXIT_DONE) goto cleanup;
-    if (verify(&arguments, set, report, &error) != SCREE_OK) {
+    if (verify(&arguments, found, &error) != SCREE_OK) {
         fprintf(stderr, "scree verify: %s\n", error.text);
         code = EXIT_FAILED;
-    } else if (report_broken_promises(report) != 0) {
+    } else if (!all_hold(found)) {
         code = EXIT_FAILED;
     }
 cleanup:
-    free(report);
-    free(set);
+    findings_free(found);
     free(arguments.inputs);
     return code;
 }

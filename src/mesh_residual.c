@@ -158,20 +158,32 @@ static double position_steps(uint32_t code, int64_t span) {
     return span <= DECODED_TOP ? floor(steps + 0.5) : steps;
 }
 
+static struct scan scan_of(const struct lattice *lattice, struct tile_id id, const struct post_block *block,
+                           bool with_east, bool with_north, struct residuals *residuals) {
+    struct lattice_window window = lattice_tile_window(lattice, id);
+    return (struct scan){.lattice = lattice,
+                         .block = block,
+                         .residuals = residuals,
+                         .tile_x = window.x,
+                         .tile_y = window.y,
+                         .span = lattice_tile_span(lattice, id.zoom),
+                         .right = window.columns,
+                         .top = window.rows,
+                         .with_east = with_east,
+                         .with_north = with_north};
+}
+
+/* Triangles without a positive area lie over no posts. */
+static void scan_corners(const struct scan *scan, const struct corner corners[3]) {
+    double area = (corners[1].x - corners[0].x) * (corners[2].y - corners[0].y) -
+                  (corners[2].x - corners[0].x) * (corners[1].y - corners[0].y);
+    if (area > 0) scan_triangle(scan, corners);
+}
+
 void residuals_add(const struct lattice *lattice, struct tile_id id, const struct decoded_tile *tile,
                    const struct post_block *block, bool with_east, bool with_north, struct residuals *residuals) {
-    struct lattice_window window = lattice_tile_window(lattice, id);
     struct tile_frame frame = tile_frame_of(lattice, id, true);
-    struct scan scan = {.lattice = lattice,
-                        .block = block,
-                        .residuals = residuals,
-                        .tile_x = window.x,
-                        .tile_y = window.y,
-                        .span = lattice_tile_span(lattice, id.zoom),
-                        .right = window.columns,
-                        .top = window.rows,
-                        .with_east = with_east,
-                        .with_north = with_north};
+    struct scan scan = scan_of(lattice, id, block, with_east, with_north, residuals);
     for (uint32_t t = 0; t < tile->triangle_count; t++) {
         struct corner corners[3];
         for (int k = 0; k < 3; k++) {
@@ -181,9 +193,20 @@ void residuals_add(const struct lattice *lattice, struct tile_id id, const struc
             if (tile->v[vertex] == frame.top) y = scan.top;     /* whose code is rounded */
             corners[k] = (struct corner){x, y, decoded_height_m(tile, vertex)};
         }
-        double area = (corners[1].x - corners[0].x) * (corners[2].y - corners[0].y) -
-                      (corners[2].x - corners[0].x) * (corners[1].y - corners[0].y);
-        if (area > 0) scan_triangle(&scan, corners);
+        scan_corners(&scan, corners);
+    }
+}
+
+void residuals_add_posts(const struct lattice *lattice, struct tile_id id, const struct post_mesh *mesh,
+                         const struct post_block *block, bool with_east, bool with_north, struct residuals *residuals) {
+    struct scan scan = scan_of(lattice, id, block, with_east, with_north, residuals);
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        struct corner corners[3];
+        for (int k = 0; k < 3; k++) {
+            const struct scree_vertex *vertex = &mesh->vertices[mesh->corners[3 * (size_t)t + (size_t)k]];
+            corners[k] = (struct corner){vertex->x, vertex->y, vertex->height * mesh->height_unit_m};
+        }
+        scan_corners(&scan, corners);
     }
 }
 

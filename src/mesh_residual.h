@@ -13,6 +13,7 @@
 
 #include "src/lattice.h"
 #include "src/quantized_mesh_decode.h"
+#include <scree/mesh.h>
 #include <stdint.h>
 
 #define RESIDUAL_BINS 3072
@@ -41,6 +42,16 @@ struct post_block {
  * `with_east`, `with_north` (they belong to the neighbour otherwise). */
 void residuals_add(const struct lattice *lattice, struct tile_id id, const struct decoded_tile *tile,
                    const struct post_block *block, bool with_east, bool with_north, struct residuals *residuals);
+
+/* The same for a mesh of posts: positions are lattice steps from the tile's south-western corner. */
+struct post_mesh {
+    const struct scree_vertex *vertices;
+    const uint32_t *corners; /* 3 a triangle */
+    uint32_t triangle_count;
+    double height_unit_m;
+};
+void residuals_add_posts(const struct lattice *lattice, struct tile_id id, const struct post_mesh *mesh,
+                         const struct post_block *block, bool with_east, bool with_north, struct residuals *residuals);
 
 double residual_mean_m(const struct residual *residual, uint64_t posts);
 double residual_rms_m(const struct residual *residual, uint64_t posts);

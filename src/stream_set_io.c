@@ -92,6 +92,44 @@ enum scree_status stream_file_play(struct scree_memory *memory, const char *path
     return status;
 }
 
+enum scree_status stream_set_play_base(struct scree_memory *memory, const struct stream_set *set, struct tile_id id,
+                                       struct scree_player **player, struct scree_error *error) {
+    char path[PRODUCT_PATH_BYTES];
+    const struct scree_player_options options = {.memory_limit_bytes = PLAYER_LIMIT_BYTES, .without_positions = true};
+    struct scree_error why = {0};
+    unsigned char *bytes = NULL;
+    size_t size_bytes = 0;
+    uint64_t file_bytes;
+    *player = NULL;
+    product_tile_path(set->folder, PRODUCT_STREAM, id, path);
+    struct scree_stream_header *header = scree_allocate(memory, 1, sizeof *header, "a stream's header", error);
+    if (header == NULL) return SCREE_E_MEMORY;
+    enum scree_status status = stream_file_header(memory, path, header, &file_bytes, error);
+    if (status != SCREE_OK) goto cleanup;
+    uint64_t wanted_bytes = header->rungs[0].offset_bytes + header->rungs[0].size_bytes;
+    if (wanted_bytes > STREAM_LIMIT_BYTES || wanted_bytes > file_bytes) {
+        status = scree_fail(error, SCREE_E_CORRUPT, "%s: ends within its base mesh, after %" PRIu64 " bytes", path,
+                            file_bytes);
+        goto cleanup;
+    }
+    bytes = scree_allocate(memory, (size_t)wanted_bytes, 1, "a stream's base mesh", error);
+    status = bytes == NULL ? SCREE_E_MEMORY : scree_player_new(&options, player, error);
+    if (status == SCREE_OK)
+        status = file_read_begin(path, bytes, (size_t)wanted_bytes, &size_bytes, &file_bytes, error);
+    if (status != SCREE_OK) goto cleanup;
+    status = scree_player_push(*player, bytes, size_bytes, &why);
+    if (status == SCREE_MORE && scree_player_rungs_ready(*player) == 1) status = SCREE_OK;
+    if (status != SCREE_OK) status = scree_fail(error, SCREE_E_CORRUPT, "%s: %s", path, why.text);
+cleanup:
+    if (status != SCREE_OK) {
+        scree_player_free(*player);
+        *player = NULL;
+    }
+    scree_release(memory, bytes);
+    scree_release(memory, header);
+    return status;
+}
+
 enum scree_status stream_set_header(struct scree_memory *memory, const struct stream_set *set, struct tile_id id,
                                     struct scree_stream_header *header, uint64_t *file_bytes,
                                     struct scree_error *error) {

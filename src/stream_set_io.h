@@ -35,7 +35,11 @@ enum scree_status stream_file_header(struct scree_memory *memory, const char *pa
 enum scree_status stream_file_play(struct scree_memory *memory, const char *path, struct scree_player **player,
                                    uint64_t *file_bytes, struct scree_error *error);
 
-/* The same, for a tile of a set. */
+/* The base mesh alone, of a tile of a set: no more of the file is read. */
+enum scree_status stream_set_play_base(struct scree_memory *memory, const struct stream_set *set, struct tile_id id,
+                                       struct scree_player **player, struct scree_error *error);
+
+/* Header and all of it, for a tile of a set. */
 enum scree_status stream_set_header(struct scree_memory *memory, const struct stream_set *set, struct tile_id id,
                                     struct scree_stream_header *header, uint64_t *file_bytes,
                                     struct scree_error *error);

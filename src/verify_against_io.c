@@ -80,6 +80,20 @@ static enum scree_status measure_window(struct measure *measure, struct raster_r
     return SCREE_OK;
 }
 
+enum scree_status verify_open_source(const struct raster_options *options, const struct lattice *lattice,
+                                     struct raster **raster, struct scree_error *error) {
+    enum scree_status status = raster_open(options, raster, error);
+    if (status != SCREE_OK) return status;
+    const struct raster_summary *summary = raster_summary(*raster);
+    if (lattice->profile == PROFILE_LOCAL && (summary->columns != lattice->columns || summary->rows != lattice->rows))
+        return scree_fail(error, SCREE_E_ARGUMENT,
+                          "%s: has %lld x %lld pixels, but the terrain was built from %lld x %lld; use the same "
+                          "inputs and options as for the build",
+                          options->inputs[0], (long long)summary->columns, (long long)summary->rows,
+                          (long long)lattice->columns, (long long)lattice->rows);
+    return raster_place(*raster, lattice, error);
+}
+
 enum scree_status verify_against(struct scree_memory *memory, const struct terrain_set *set,
                                  struct raster_options options, verify_progress *progress, void *context,
                                  struct against *against, struct scree_error *error) {
@@ -95,18 +109,7 @@ enum scree_status verify_against(struct scree_memory *memory, const struct terra
     if (against->zooms == NULL) goto cleanup;
     heights_m = scree_allocate(memory, (size_t)BLOCK_POSTS * BLOCK_POSTS, sizeof *heights_m, "posts", error);
     if (heights_m == NULL) goto cleanup;
-    status = raster_open(&options, &raster, error);
-    if (status != SCREE_OK) goto cleanup;
-    const struct raster_summary *summary = raster_summary(raster);
-    if (lattice->profile == PROFILE_LOCAL && (summary->columns != lattice->columns || summary->rows != lattice->rows)) {
-        status = scree_fail(error, SCREE_E_ARGUMENT,
-                            "%s: has %lld x %lld pixels, but the terrain was built from %lld x %lld; use the same "
-                            "inputs and options as for the build",
-                            options.inputs[0], (long long)summary->columns, (long long)summary->rows,
-                            (long long)lattice->columns, (long long)lattice->rows);
-        goto cleanup;
-    }
-    status = raster_place(raster, lattice, error);
+    status = verify_open_source(&options, lattice, &raster, error);
     if (status == SCREE_OK) status = raster_reader_new(raster, &reader, error);
     if (status != SCREE_OK) goto cleanup;
     int window_count = raster_windows(raster, windows);

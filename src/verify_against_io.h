@@ -10,6 +10,11 @@
 #include "stream/memory.h"
 #include <scree/error.h>
 
+/* Opens the rasters and places them on the lattice of what was built from them; SCREE_E_ARGUMENT when they are others.
+ * `raster` is to be freed in any case. */
+enum scree_status verify_open_source(const struct raster_options *options, const struct lattice *lattice,
+                                     struct raster **raster, struct scree_error *error);
+
 struct against {
     struct residuals *zooms; /* MAX_ZOOM + 1 of them */
 };

@@ -1,10 +1,7 @@
 #include "src/verify_print_io.h"
 
-#include "src/json_text.h"
-
 #include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #define QUANTILE 0.99
 
@@ -16,7 +13,7 @@ static void print_notes(const struct promise_state *state) {
         printf("          and %" PRIu64 " more\n", state->broken - (uint64_t)state->note_count);
 }
 
-static void print_promises(const struct verify_report *report, bool quiet) {
+void verify_print_promises(const struct verify_report *report, bool quiet) {
     for (int p = 0; p < PROMISE_COUNT; p++) {
         const struct promise_state *state = &report->promises[p];
         if (state->checked == 0 || (quiet && state->broken == 0)) continue;
@@ -27,6 +24,15 @@ static void print_promises(const struct verify_report *report, bool quiet) {
                    state->checked);
             print_notes(state);
         }
+    }
+}
+
+void verify_print_end(const struct verify_report *report) {
+    int broken = report_broken_promises(report);
+    if (broken == 0) {
+        printf("\nAll promises hold.\n");
+    } else {
+        printf("\n%d %s broken.\n", broken, broken == 1 ? "promise is" : "promises are");
     }
 }
 
@@ -69,17 +75,12 @@ void verify_print_text(const struct terrain_set *set, const struct verify_report
                set->layer.lattice.profile == PROFILE_GEODETIC ? "geodetic" : "local", set->layer.lattice.finest_zoom,
                all.tiles, all.triangles, (double)all.bytes / 1e6,
                set->layer.is_ours ? "" : " (not made by scree: format and geometry are checked)");
-    print_promises(report, quiet);
+    verify_print_promises(report, quiet);
     if (quiet) return;
     printf("\n  largest difference between neighbours: %g m, over %" PRIu64 " shared borders\n",
            report->border_difference_m, report->borders);
     if (against->zooms != NULL) print_errors(set, against);
-    int broken = report_broken_promises(report);
-    if (broken == 0) {
-        printf("\nAll promises hold.\n");
-    } else {
-        printf("\n%d %s broken.\n", broken, broken == 1 ? "promise is" : "promises are");
-    }
+    verify_print_end(report);
 }
 
 /* ---- for machines ---- */
@@ -152,32 +153,26 @@ static void put_zoom(struct json_text *json, const struct terrain_set *set, cons
     json_close(json, '}');
 }
 
-enum scree_status verify_print_json(const struct terrain_set *set, const struct verify_report *report,
-                                    const struct against *against, struct scree_error *error) {
-    struct json_text json = {0};
-    json_open(&json, '{');
-    json_key(&json, "terrain");
-    json_string(&json, set->folder);
-    json_key(&json, "ok");
-    json_boolean(&json, report_broken_promises(report) == 0);
-    json_key(&json, "borders");
-    json_integer(&json, (int64_t)report->borders);
-    json_key(&json, "border_difference_m");
-    json_number(&json, report->border_difference_m);
-    json_key(&json, "promises");
-    json_open(&json, '[');
+void verify_put_promises(struct json_text *json, const struct verify_report *report) {
+    json_key(json, "promises");
+    json_open(json, '[');
     for (int p = 0; p < PROMISE_COUNT; p++)
-        if (report->promises[p].checked != 0) put_promise(&json, (enum promise)p, &report->promises[p]);
-    json_close(&json, ']');
-    json_key(&json, "zooms");
-    json_open(&json, '[');
+        if (report->promises[p].checked != 0) put_promise(json, (enum promise)p, &report->promises[p]);
+    json_close(json, ']');
+}
+
+void verify_put_terrain(struct json_text *json, const struct terrain_set *set, const struct verify_report *report,
+                        const struct against *against) {
+    json_key(json, "terrain");
+    json_string(json, set->folder);
+    json_key(json, "borders");
+    json_integer(json, (int64_t)report->borders);
+    json_key(json, "border_difference_m");
+    json_number(json, report->border_difference_m);
+    verify_put_promises(json, report);
+    json_key(json, "zooms");
+    json_open(json, '[');
     for (int zoom = 0; zoom <= MAX_ZOOM; zoom++)
-        if (report->zooms[zoom].tiles != 0) put_zoom(&json, set, report, against, zoom);
-    json_close(&json, ']');
-    json_close(&json, '}');
-    char *text = json_text_take(&json);
-    if (text == NULL) return scree_fail(error, SCREE_E_MEMORY, "no memory for the report");
-    fputs(text, stdout);
-    free(text);
-    return SCREE_OK;
+        if (report->zooms[zoom].tiles != 0) put_zoom(json, set, report, against, zoom);
+    json_close(json, ']');
 }

@@ -21,6 +21,13 @@ static const struct {
     [PROMISE_COUNTS] = {"counts", "layer.json's counts are those of the files"},
     [PROMISE_LADDER] = {"ladder", "tolerance and SVO shrink from zoom to zoom"},
     [PROMISE_ERROR] = {"error", "the finest zoom is within its tolerance"},
+    [PROMISE_STREAM_LISTED] = {"stream_listed", "scree.json lists exactly the streams that are there"},
+    [PROMISE_STREAM_COUNTS] = {"stream_counts", "scree.json's figures are those of the streams"},
+    [PROMISE_STREAM_FORMAT] = {"stream_format", "every stream decodes, from the first byte to the last"},
+    [PROMISE_STREAM_PLACE] = {"stream_place", "headers say what scree.json and file names say"},
+    [PROMISE_STREAM_SCALES] = {"stream_scales", "scales are on the ladder and grow finer in order"},
+    [PROMISE_STREAM_FAMILIES] = {"stream_families", "a tile at its finest is its children at their coarsest"},
+    [PROMISE_STREAM_ERROR] = {"stream_error", "no post is farther off than its stream says"},
 };
 
 const char *promise_name(enum promise promise) {

@@ -22,6 +22,14 @@ enum promise {
     PROMISE_COUNTS,      /* layer.json's tiles, vertices, triangles and bytes are those of the files */
     PROMISE_LADDER,      /* tolerance and SVO never grow from a zoom to the next finer one */
     PROMISE_ERROR,       /* the finest zoom is within its tolerance of the source */
+    /* of streams, besides ancestors, orientation, cover and borders */
+    PROMISE_STREAM_LISTED,   /* scree.json lists the files that are there, no more and no less */
+    PROMISE_STREAM_COUNTS,   /* and its figures are those of the files */
+    PROMISE_STREAM_FORMAT,   /* streams decode, checksums are right */
+    PROMISE_STREAM_PLACE,    /* headers agree with scree.json and with the names of the files */
+    PROMISE_STREAM_SCALES,   /* rungs are on the ladder, SVO does not grow and is what the MMQE makes it */
+    PROMISE_STREAM_FAMILIES, /* a tile at its finest rung is the union of its children at their coarsest */
+    PROMISE_STREAM_ERROR,    /* no post of the source is farther from a mesh than its stream says */
     PROMISE_COUNT
 };
 
