@@ -4,14 +4,14 @@
 #include <string.h>
 
 #define POST_CLASSES  12
-#define AGES          4
-#define ANGLE_CLASSES 8
+#define ANGLE_CLASSES 14
 #define MOST_ROUNDS   1024
 #define HEIGHT_BITS   31
+#define HEIGHT_MEMORY 4 /* residuals of earlier increments count as so many */
 #define MOST_HEIGHT   (1 << 30)
 
 struct increment_models {
-    struct bit_model more[3][AGES][POST_CLASSES]; /* whether one more vertex lies in a triangle */
+    struct bit_model more[3][POST_CLASSES]; /* whether one more vertex lies in a triangle */
     struct post_models posts;
     struct bit_model ready[2][3][4];
     struct bit_model inside[2][4][ANGLE_CLASSES]; /* whether the walk goes on over an edge */
@@ -55,27 +55,24 @@ static void add_pending(struct increment *increment, uint32_t triangle, int32_t 
     *first = increment->pending_count++;
 }
 
-static bool is_pending(const struct increment *increment, uint32_t triangle, int32_t x, int32_t y) {
-    uint32_t p = increment->surface->triangles[triangle].first;
-    while (p != SURFACE_NONE && (increment->pending[p].x != x || increment->pending[p].y != y))
-        p = increment->pending[p].next;
-    return p != SURFACE_NONE;
+/* Places of a triangle ascend, so none is there twice. */
+static bool is_after(const struct pending *last, int32_t x, int32_t y) {
+    return y > last->y || (y == last->y && x > last->x);
 }
 
 static bool code_places(struct increment *increment, uint32_t triangle, uint32_t most) {
     const struct surface_triangle *at = &increment->surface->triangles[triangle];
     const struct pending *places = NULL;
     uint32_t count = increment->plan != NULL ? increment->plan->places(increment->plan->context, triangle, &places) : 0;
-    uint32_t age = (uint32_t)increment->surface->increment - at->born;
     int class = post_class(at->posts);
     for (uint32_t i = 0; i < at->posts; i++) {
-        struct bit_model *model = &increment->models->more[i < 2 ? i : 2][age < AGES ? age : AGES - 1][class];
+        struct bit_model *model = &increment->models->more[i < 2 ? i : 2][class];
         if (!code_bit(increment->coder, model, i < count)) break;
         int32_t x = i < count ? places[i].x : 0, y = i < count ? places[i].y : 0;
         if (increment->pending_count == most) return false;
         if (!posts_code(increment->coder, &increment->models->posts, increment->surface, triangle, &x, &y))
             return false;
-        if (is_pending(increment, triangle, x, y)) return false;
+        if (i > 0 && !is_after(&increment->pending[increment->pending_count - 1], x, y)) return false;
         add_pending(increment, triangle, x, y);
     }
     return true;
@@ -105,15 +102,16 @@ static void keep_common(struct common *common, uint32_t a, uint32_t b) {
  * w is the one that Delaunay would draw. */
 static int angle_class(const struct scree_vertex *v, const struct scree_vertex *w, const struct scree_vertex *x,
                        const struct scree_vertex *y) {
-    static const double limits[ANGLE_CLASSES - 1] = {-2, -0.7, -0.2, 0, 0.3, 1, 3};
+    static const double limits[ANGLE_CLASSES - 1] = {-12, -6, -3.5, -2, -1.2, -0.7, -0.3, 0, 0.3, 0.7, 1.3, 2.2, 4};
     double vx_x = (double)x->x - v->x, vx_y = (double)x->y - v->y, vy_x = (double)y->x - v->x,
            vy_y = (double)y->y - v->y;
     double wx_x = (double)x->x - w->x, wx_y = (double)x->y - w->y, wy_x = (double)y->x - w->x,
            wy_y = (double)y->y - w->y;
     double cross_v = vx_x * vy_y - vx_y * vy_x, cross_w = wy_x * wx_y - wy_y * wx_x;
-    double sum = (vx_x * vy_x + vx_y * vy_y) / cross_v + (wx_x * wy_x + wx_y * wy_y) / cross_w;
+    double dot_v = vx_x * vy_x + vx_y * vy_y, dot_w = wx_x * wy_x + wx_y * wy_y;
+    double sum = (dot_v * cross_w + dot_w * cross_v) / (cross_v * cross_w);
     int class = 0;
-    while (class < ANGLE_CLASSES - 1 && sum > limits[class]) class ++;
+    for (int i = 0; i < ANGLE_CLASSES - 1; i++) class += sum > limits[i];
     return class;
 }
 
@@ -305,6 +303,11 @@ static uint32_t gather(struct increment *increment, uint32_t but) {
     return gathered;
 }
 
+/* Takes steps off those that are left; none are left where there are too few. */
+static void charge(struct increment *increment, uint32_t steps) {
+    increment->steps_left = increment->steps_left > steps ? increment->steps_left - steps : 0;
+}
+
 static void hand_out(struct increment *increment, uint32_t gathered) {
     const struct cavity *cavity = increment->cavity;
     for (uint32_t p = gathered, next; p != SURFACE_NONE; p = next) {
@@ -314,6 +317,7 @@ static void hand_out(struct increment *increment, uint32_t gathered) {
         while (i + 1 < cavity->edge_count &&
                !posts_belong(increment->surface, cavity->slots[i], pending->x, pending->y))
             i++;
+        charge(increment, i + 1);
         pending->triangle = cavity->slots[i];
         pending->next = increment->surface->triangles[pending->triangle].first;
         increment->surface->triangles[pending->triangle].first = p;
@@ -360,7 +364,12 @@ static enum scree_status code_insertion(struct increment *increment, uint32_t p,
     bool fine = code_height(increment, pending->triangle, &vertex);
     increment->coder->cost_bits = increment->connectivity_bits;
     if (!fine) return scree_fail(error, SCREE_E_CORRUPT, "a vertex is higher than any can be");
-    uint32_t added = increment->cavity->edge_count - increment->cavity->triangle_count;
+    uint32_t opened = increment->cavity->triangle_count, added = increment->cavity->edge_count - opened;
+    charge(increment, opened);
+    if (increment->steps_left == 0 || increment->openings_left < opened)
+        return scree_fail(error, increment->plan != NULL ? SCREE_E_LIMIT : SCREE_E_CORRUPT,
+                          "an increment changes more triangles than its vertices are worth");
+    increment->openings_left -= opened;
     if (added > increment->surface->triangle_capacity - increment->surface->triangle_count)
         return scree_fail(error, SCREE_E_CORRUPT, "an increment has more triangles than the header says");
     enum scree_status status = make_room(increment, error);
@@ -376,6 +385,7 @@ static enum scree_status code_insertions(struct increment *increment, struct scr
         uint32_t left = 0;
         for (uint32_t i = 0; i < waiting; i++) {
             uint32_t p = increment->waiting[i];
+            charge(increment, 1);
             if (!code_ready(increment, &increment->pending[p], round)) {
                 increment->waiting[left++] = p;
                 continue;
@@ -390,16 +400,27 @@ static enum scree_status code_insertions(struct increment *increment, struct scr
     return SCREE_OK;
 }
 
+/* Residuals shrink from rung to rung: what was learned of them is soon overruled. */
+static void hurry_heights(struct increment_models *models) {
+    struct bit_model *first = (struct bit_model *)models->height_bits, *sizes = (struct bit_model *)models->mantissa;
+    for (size_t i = 0; i < sizeof models->height_bits / sizeof *first; i++)
+        if (first[i].seen > HEIGHT_MEMORY) first[i].seen = HEIGHT_MEMORY;
+    for (size_t i = 0; i < sizeof models->mantissa / sizeof *sizes; i++)
+        if (sizes[i].seen > HEIGHT_MEMORY) sizes[i].seen = HEIGHT_MEMORY;
+}
+
 enum scree_status increment_code(struct increment *increment, uint32_t most, struct scree_error *error) {
     uint32_t triangles = increment->surface->triangle_count;
     if (most > increment->pending_capacity) most = increment->pending_capacity;
     increment->pending_count = 0;
-    increment->surface->increment++;
+    hurry_heights(increment->models);
     increment->coder->cost_bits = increment->position_bits;
     for (uint32_t t = 0; t < triangles; t++)
         if (increment->surface->triangles[t].posts > 0 && !code_places(increment, t, most))
             return scree_fail(error, SCREE_E_CORRUPT, "a place of an increment is not one");
     increment->coder->cost_bits = increment->connectivity_bits;
+    increment->steps_left += (uint64_t)INCREMENT_STEPS_PER_VERTEX * increment->pending_count;
+    increment->openings_left += (uint64_t)INCREMENT_OPENINGS_PER_VERTEX * increment->pending_count;
     return code_insertions(increment, error);
 }
 
@@ -409,6 +430,8 @@ enum scree_status increment_start(struct scree_memory *memory, uint32_t most, st
     increment->memory = memory;
     increment->surface = surface;
     increment->pending_capacity = most;
+    increment->steps_left = INCREMENT_STEPS_FREE;
+    increment->openings_left = INCREMENT_OPENINGS_FREE;
     increment->models = scree_allocate(memory, 1, sizeof *increment->models, "a stream's models", error);
     increment->cavity = scree_allocate(memory, 1, sizeof *increment->cavity, "a stream's models", error);
     increment->pending = scree_allocate(memory, most, sizeof *increment->pending, "an increment's vertices", error);

@@ -49,9 +49,18 @@ struct increment {
     struct cavity *cavity;
     struct pending *pending;
     uint32_t pending_count, pending_capacity;
-    uint32_t *waiting;                                       /* pending vertices of the present round */
+    uint32_t *waiting;                  /* pending vertices of the present round */
+    uint64_t steps_left, openings_left; /* what may still be looked at, and how many triangles may make way */
     double *position_bits, *connectivity_bits, *height_bits; /* see encode_bits; NULL: not wanted */
 };
+
+/* No bytes may cost a reader more time or memory than their number of vertices is worth. Over a whole stream, at most
+ * STEPS_FREE + STEPS_PER_VERTEX x vertices edges and vertices are looked at, and at most OPENINGS_FREE +
+ * OPENINGS_PER_VERTEX x vertices triangles make way: real ones take up to 100 steps and 3 openings a vertex. */
+#define INCREMENT_STEPS_FREE          (1 << 20)
+#define INCREMENT_STEPS_PER_VERTEX    1024
+#define INCREMENT_OPENINGS_FREE       4096
+#define INCREMENT_OPENINGS_PER_VERTEX 8
 
 /* Models and scratch for layers of up to `most` vertices. */
 enum scree_status increment_start(struct scree_memory *memory, uint32_t most, struct surface *surface,

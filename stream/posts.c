@@ -1,8 +1,9 @@
 #include "stream/posts.h"
 
-#define SMALL_BOX    256 /* posts of a bounding box that are looked at one by one */
-#define MOST_POSTS   65535
-#define WEIGHT_CLASS 4
+#include <string.h>
+
+#define SMALL_BOX  256 /* posts of a bounding box that are looked at one by one */
+#define MOST_POSTS 65535
 
 /* A triangle as three edges: edge i runs from corner i, and a point lies left of it by (dx * (y - y0) - dy * (x - x0)),
  * twice the area of the triangle that they make. */
@@ -45,11 +46,11 @@ bool posts_belong(const struct surface *surface, uint32_t triangle, int32_t x, i
     return belongs(&edges, x, y);
 }
 
-static int64_t common_divisor(int64_t a, int64_t b) {
-    if (a < 0) a = -a;
-    if (b < 0) b = -b;
+static uint32_t common_divisor(int64_t dx, int64_t dy) {
+    uint32_t a = (uint32_t)(dx < 0 ? -dx : dx), b = (uint32_t)(dy < 0 ? -dy : dy);
+    if (a == 1 || b == 1) return 1;
     while (b != 0) {
-        int64_t rest = a % b;
+        uint32_t rest = a % b;
         a = b;
         b = rest;
     }
@@ -71,7 +72,7 @@ uint16_t posts_count(const struct surface *surface, uint32_t triangle) {
     return count < MOST_POSTS ? (uint16_t)count : MOST_POSTS;
 }
 
-/* ---- small triangles: the posts one by one ---- */
+/* ---- small triangles: the posts are counted through ---- */
 
 struct box {
     int64_t x_first, y_first, x_last, y_last;
@@ -88,53 +89,48 @@ static struct box box_of(const struct edges *edges) {
     return box;
 }
 
-/* How likely a post is, by the least of its barycentric coordinates: vertices come in the middle of triangles. */
-static uint32_t weight_of(const struct edges *edges, int64_t area2, int64_t x, int64_t y) {
-    static const uint32_t weights[WEIGHT_CLASS] = {1, 1, 1, 1};
-    int64_t least = left_of(edges, 0, x, y);
-    for (int i = 1; i < 3; i++) {
-        int64_t left = left_of(edges, i, x, y);
-        if (left < least) least = left;
+static bool is_corner(const struct edges *edges, int64_t x, int64_t y) {
+    return (x == edges->x[0] && y == edges->y[0]) || (x == edges->x[1] && y == edges->y[1]) ||
+           (x == edges->x[2] && y == edges->y[2]);
+}
+
+/* Walks through the posts of the box, row by row, to post number `index` of the triangle or to (x, y), whichever comes
+ * first; returns the number of the post where it stopped, which is in x and y then. */
+static uint32_t walk_posts(const struct edges *edges, const struct box *box, uint32_t index, int32_t *x, int32_t *y) {
+    int32_t row_left[3], left[3], dx[3], dy[3]; /* a small box: all of it fits */
+    uint32_t passed = 0;
+    for (int i = 0; i < 3; i++) {
+        dx[i] = (int32_t)edges->dx[i];
+        dy[i] = (int32_t)edges->dy[i];
+        row_left[i] = (int32_t)left_of(edges, i, box->x_first, box->y_first) - (edges->owned[i] ? 0 : 1);
     }
-    return weights[least == 0 ? 0 : 1 + (12 * least > area2) + (6 * least > area2)];
-}
-
-/* Walks through the posts in the box; stops at the one that covers `target` of the added weights, or at (x, y). */
-struct walk {
-    uint32_t before, weight; /* weights of the posts passed, and of the one where it stopped */
-    int32_t x, y;
-    bool found;
-};
-
-static struct walk walk_posts(const struct edges *edges, const struct box *box, int64_t area2, const int32_t *at,
-                              uint32_t target) {
-    struct walk walk = {0};
-    for (int64_t y = box->y_first; y <= box->y_last; y++)
-        for (int64_t x = box->x_first; x <= box->x_last; x++) {
-            if (!belongs(edges, x, y)) continue;
-            walk.weight = weight_of(edges, area2, x, y);
-            walk.x = (int32_t)x;
-            walk.y = (int32_t)y;
-            walk.found = at != NULL ? x == at[0] && y == at[1] : walk.before + walk.weight > target;
-            if (walk.found) return walk;
-            walk.before += walk.weight;
+    for (int32_t at_y = (int32_t)box->y_first; at_y <= box->y_last; at_y++) {
+        memcpy(left, row_left, sizeof left);
+        for (int32_t at_x = (int32_t)box->x_first; at_x <= box->x_last; at_x++) {
+            if ((left[0] | left[1] | left[2]) >= 0 && !is_corner(edges, at_x, at_y)) {
+                if (passed == index || (at_x == *x && at_y == *y)) {
+                    *x = at_x;
+                    *y = at_y;
+                    return passed;
+                }
+                passed++;
+            }
+            for (int i = 0; i < 3; i++) left[i] -= dy[i];
         }
-    return walk;
+        for (int i = 0; i < 3; i++) row_left[i] += dx[i];
+    }
+    return passed;
 }
 
-static bool code_small(struct range_coder *coder, const struct edges *edges, const struct box *box, int32_t *x,
-                       int32_t *y) {
-    int64_t area2 = edges->dx[0] * edges->dy[1] - edges->dx[1] * edges->dy[0];
-    uint32_t total = walk_posts(edges, box, area2, NULL, UINT32_MAX).before;
-    if (total == 0) return false;
-    const int32_t at[2] = {*x, *y};
-    struct walk walk = coder->writing ? walk_posts(edges, box, area2, at, 0)
-                                      : walk_posts(edges, box, area2, NULL, code_ask(coder, total));
-    if (!walk.found) return false;
-    code_take(coder, total, walk.before, walk.weight);
-    *x = walk.x;
-    *y = walk.y;
-    return true;
+static void code_small(struct range_coder *coder, const struct edges *edges, const struct box *box, uint16_t count,
+                       int32_t *x, int32_t *y) {
+    uint32_t index = 0;
+    if (coder->writing)
+        index = walk_posts(edges, box, UINT32_MAX, x, y);
+    else
+        *x = *y = INT32_MIN;
+    index = code_uniform(coder, count, index);
+    if (!coder->writing) walk_posts(edges, box, index, x, y);
 }
 
 /* ---- large ones: a row, then a post of it ---- */
@@ -200,7 +196,9 @@ bool posts_code(struct range_coder *coder, struct post_models *models, const str
     edges_of(surface, triangle, &edges);
     struct box box = box_of(&edges);
     int64_t width = box.x_last - box.x_first + 1, height = box.y_last - box.y_first + 1;
-    if (width <= SMALL_BOX && height <= SMALL_BOX && width * height <= SMALL_BOX)
-        return code_small(coder, &edges, &box, x, y);
+    if (width <= SMALL_BOX && height <= SMALL_BOX && width * height <= SMALL_BOX) {
+        code_small(coder, &edges, &box, surface->triangles[triangle].posts, x, y);
+        return true;
+    }
     return code_large(coder, models, &edges, &box, x, y);
 }

@@ -3,8 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#define LEAST_RANGE (1U << 24)
-#define CODE_BYTES  4
+#define CODE_BYTES 4
 
 static void put_byte(struct range_coder *coder, unsigned char byte) {
     if (coder->written_bytes == coder->capacity_bytes) {
@@ -55,18 +54,12 @@ enum scree_status range_coder_finish(struct range_coder *coder, struct scree_err
     return coder->error.status;
 }
 
-static inline uint32_t next_byte(struct range_coder *coder) {
-    if (coder->next < coder->end) return *coder->next++;
-    coder->beyond++;
-    return 0;
-}
-
 void range_coder_read(const void *bytes, size_t size_bytes, struct range_coder *coder) {
     memset(coder, 0, sizeof *coder);
     coder->range = UINT32_MAX;
     coder->next = bytes;
     coder->end = coder->next + size_bytes;
-    for (int i = 0; i < CODE_BYTES; i++) coder->code = coder->code << 8 | next_byte(coder);
+    for (int i = 0; i < CODE_BYTES; i++) coder->code = coder->code << 8 | range_coder_next(coder);
 }
 
 bool range_coder_is_spent(const struct range_coder *coder) {
@@ -78,45 +71,28 @@ struct bit_model bit_model(int percent) {
 }
 
 static inline void normalize(struct range_coder *coder) {
-    while (coder->range < LEAST_RANGE) {
+    while (coder->range < RANGE_LEAST) {
         coder->range <<= 8;
         if (coder->writing)
             shift_low(coder);
         else
-            coder->code = coder->code << 8 | next_byte(coder);
+            coder->code = coder->code << 8 | range_coder_next(coder);
     }
 }
 
-/* 65536 / (n + 2.5): early bits count more. */
-static const uint16_t pace[BIT_MEMORY + 1] = {
+const uint16_t bit_pace[BIT_MEMORY + 1] = {
 #define P(n)  (uint16_t)(131072 / (2 * (n) + 5))
 #define P8(n) P(n), P(n + 1), P(n + 2), P(n + 3), P(n + 4), P(n + 5), P(n + 6), P(n + 7)
     P8(0),  P8(8),  P8(16), P8(24), P8(32), P8(40),  P8(48),  P8(56),
     P8(64), P8(72), P8(80), P8(88), P8(96), P8(104), P8(112), P(120)};
 
-static inline void learn(struct bit_model *model, bool bit) {
-    int32_t error = (bit ? BIT_ONE - BIT_LEAST : BIT_LEAST) - (int32_t)model->one;
-    model->one = (uint16_t)(model->one + error * (int32_t)pace[model->seen] / 65536);
-    if (model->seen < BIT_MEMORY) model->seen++;
-}
-
-bool code_bit(struct range_coder *coder, struct bit_model *model, bool bit) {
+void range_coder_put(struct range_coder *coder, const struct bit_model *model, bool bit) {
     uint32_t share = (coder->range >> 16) * model->one;
-    if (!coder->writing) bit = coder->code < share;
     if (coder->cost_bits != NULL)
         *coder->cost_bits -= log2((bit ? model->one : BIT_ONE - model->one) / (double)BIT_ONE);
-    if (bit) {
-        coder->range = share;
-    } else {
-        coder->range -= share;
-        if (coder->writing)
-            coder->low += share;
-        else
-            coder->code -= share;
-    }
+    coder->low += bit ? 0 : share;
+    coder->range = bit ? share : coder->range - share;
     normalize(coder);
-    learn(model, bit);
-    return bit;
 }
 
 uint32_t code_ask(const struct range_coder *coder, uint32_t total) {

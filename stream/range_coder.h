@@ -17,6 +17,7 @@
 #define BIT_LEAST    32    /* no bit is surer than this share of BIT_ONE */
 #define BIT_MEMORY   120   /* a model averages over so many bits at the most */
 #define UNIFORM_MOST 65536 /* the largest range of a uniform symbol */
+#define RANGE_LEAST  (1U << 24)
 
 struct bit_model {
     uint16_t one;  /* probability of a 1, in 1 / BIT_ONE */
@@ -51,11 +52,44 @@ void range_coder_read(const void *bytes, size_t size_bytes, struct range_coder *
 /* Whether all bytes, and none that are not there, have been used. */
 bool range_coder_is_spent(const struct range_coder *coder);
 
+static inline uint32_t range_coder_next(struct range_coder *coder) {
+    if (coder->next < coder->end) return *coder->next++;
+    coder->beyond++;
+    return 0;
+}
+
 /* A model that starts with this probability of a 1, in percent. */
 struct bit_model bit_model(int percent);
 
+/* 65536 / (n + 2.5): how much the bit after n others counts. */
+extern const uint16_t bit_pace[BIT_MEMORY + 1];
+
+/* Takes the part of the interval that has been chosen, when writing. */
+void range_coder_put(struct range_coder *coder, const struct bit_model *model, bool bit);
+
+static inline void bit_learn(struct bit_model *model, bool bit) {
+    int32_t error = (bit ? BIT_ONE - BIT_LEAST : BIT_LEAST) - (int32_t)model->one;
+    model->one = (uint16_t)(model->one + error * (int32_t)bit_pace[model->seen] / 65536);
+    if (model->seen < BIT_MEMORY) model->seen++;
+}
+
 /* One bit; `bit` is looked at only when writing. */
-bool code_bit(struct range_coder *coder, struct bit_model *model, bool bit);
+static inline bool code_bit(struct range_coder *coder, struct bit_model *model, bool bit) {
+    if (coder->writing) {
+        range_coder_put(coder, model, bit);
+    } else {
+        uint32_t share = (coder->range >> 16) * model->one;
+        bit = coder->code < share;
+        coder->code -= bit ? 0 : share;
+        coder->range = bit ? share : coder->range - share;
+        while (coder->range < RANGE_LEAST) {
+            coder->range <<= 8;
+            coder->code = coder->code << 8 | range_coder_next(coder);
+        }
+    }
+    bit_learn(model, bit);
+    return bit;
+}
 
 /* A number from 0 to below `count` (1 .. UNIFORM_MOST), all alike. */
 uint32_t code_uniform(struct range_coder *coder, uint32_t count, uint32_t value);

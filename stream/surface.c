@@ -25,7 +25,6 @@ void surface_release(struct scree_memory *memory, struct surface *surface) {
 
 static void renew(struct surface *surface, uint32_t t) {
     surface->triangles[t].posts = posts_count(surface, t);
-    surface->triangles[t].born = surface->increment;
     surface->triangles[t].first = SURFACE_NONE;
 }
 

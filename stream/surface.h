@@ -19,7 +19,6 @@ struct surface_triangle {
     uint32_t vertex[3];
     uint32_t twin[3]; /* the half-edge on the other side; SURFACE_NONE on the border */
     uint16_t posts;   /* lattice posts of the triangle where a vertex can be inserted, as far as 65535 */
-    uint16_t born;    /* the increment that made it what it is */
     uint32_t first;   /* of a list of points that lie in it, kept by whoever uses the surface; SURFACE_NONE */
 };
 
@@ -27,7 +26,6 @@ struct surface {
     uint32_t vertex_count, triangle_count, triangle_capacity;
     struct scree_vertex *vertices;
     struct surface_triangle *triangles;
-    uint16_t increment; /* the present one: what triangles are born in */
 };
 
 struct cavity {
