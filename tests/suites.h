@@ -29,6 +29,8 @@ SUITE(raster_mosaic)
 SUITE(extract)
 SUITE(against)
 SUITE(pyramid)
+SUITE(stitch)
+SUITE(select)
 SUITE(playback)
 SUITE(player)
 
