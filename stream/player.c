@@ -217,7 +217,8 @@ enum scree_status scree_player_seek_splits(struct scree_player *player, uint32_t
     const struct scree_rung *rungs = player->header.rungs;
     uint32_t base = rungs[0].vertex_count, finest = rungs[player->header.rung_count - 1].vertex_count - base;
     if (splits > finest) splits = finest;
-    uint32_t rung = 0;
+    uint32_t rung = (uint32_t)player->level; /* small steps end near it */
+    while (rung > 0 && rungs[rung - 1].vertex_count - base >= splits) rung--;
     while (rung + 1 < player->rungs_ready && rungs[rung].vertex_count - base < splits) rung++;
     uint32_t ready = rungs[rung].vertex_count - base, reached = splits < ready ? splits : ready;
     seek_vertices(player, base + reached, rung);
