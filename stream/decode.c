@@ -11,36 +11,67 @@ struct stream_decoder {
     struct increment increment;
     struct range_coder coder;
     struct progressive decoded;
-    uint32_t blocks; /* decoded */
+    uint32_t blocks;          /* decoded */
+    uint32_t vertex_capacity; /* of what is decoded */
     bool failed;
 };
 
+/* Makes room for the next block's vertices and triangles, and for half as many again as there were, as far as the
+ * finest rung goes: memory follows the blocks that have come, not the header's promises. */
+static uint32_t room_for(uint32_t wanted, uint32_t capacity, uint32_t most) {
+    if (wanted <= capacity) return capacity;
+    uint32_t larger = capacity + capacity / 2;
+    if (larger < wanted) larger = wanted;
+    return larger < most ? larger : most;
+}
+
+static bool make_room_for_vertices(struct stream_decoder *decoder, uint32_t count, struct scree_error *error) {
+    struct scree_memory *memory = decoder->memory;
+    struct progressive *decoded = &decoder->decoded;
+    struct scree_vertex *vertices =
+        scree_reallocate(memory, decoded->vertices, count, sizeof *vertices, "a stream's vertices", error);
+    if (vertices == NULL) return false;
+    decoded->vertices = vertices;
+    struct progressive_split *splits =
+        scree_reallocate(memory, decoded->splits, count, sizeof *splits, "a stream's splits", error);
+    if (splits == NULL) return false;
+    decoded->splits = splits;
+    decoder->vertex_capacity = count;
+    return true;
+}
+
+static bool make_room_for_triangles(struct stream_decoder *decoder, uint32_t count, struct scree_error *error) {
+    uint32_t *corners = scree_reallocate(decoder->memory, decoder->decoded.corners, count, 3 * sizeof *corners,
+                                         "a stream's triangles", error);
+    if (corners != NULL) decoder->decoded.corners = corners;
+    return corners != NULL;
+}
+
+static bool make_room(struct stream_decoder *decoder, struct scree_error *error) {
+    const struct scree_rung *rung = &decoder->header->rungs[decoder->blocks];
+    const struct scree_rung *finest = &decoder->header->rungs[decoder->header->rung_count - 1];
+    struct surface *surface = &decoder->surface;
+    uint32_t vertices = room_for(rung->vertex_count, decoder->vertex_capacity, finest->vertex_count);
+    uint32_t triangles = room_for(rung->triangle_count, surface->triangle_capacity, finest->triangle_count);
+    if (vertices != decoder->vertex_capacity && !make_room_for_vertices(decoder, vertices, error)) return false;
+    if (triangles != surface->triangle_capacity && !make_room_for_triangles(decoder, triangles, error)) return false;
+    return surface_reserve(decoder->memory, vertices, triangles, surface, error) &&
+           increment_reserve(&decoder->increment, rung->vertex_count - surface->vertex_count, error);
+}
+
 enum scree_status stream_decoder_new(struct scree_memory *memory, const struct scree_stream_header *header,
                                      struct stream_decoder **decoder, struct scree_error *error) {
-    const struct scree_rung *base = &header->rungs[0], *finest = &header->rungs[header->rung_count - 1];
-    uint32_t most = base->vertex_count, splits = finest->vertex_count - base->vertex_count;
-    for (uint32_t i = 1; i < header->rung_count; i++) {
-        uint32_t added = header->rungs[i].vertex_count - header->rungs[i - 1].vertex_count;
-        if (added > most) most = added;
-    }
-    struct stream_decoder *made = scree_allocate(memory, 1, sizeof *made, "a stream's decoder", error);
+    struct scree_error failure = {0};
+    struct stream_decoder *made = scree_allocate(memory, 1, sizeof *made, "a stream's decoder", &failure);
     *decoder = NULL;
-    if (made == NULL) return SCREE_E_MEMORY;
-    made->memory = memory;
-    made->header = header;
-    struct progressive *decoded = &made->decoded;
-    decoded->vertices = scree_allocate(memory, finest->vertex_count, sizeof *decoded->vertices, "vertices", error);
-    decoded->corners =
-        scree_allocate(memory, 3 * (size_t)finest->triangle_count, sizeof *decoded->corners, "triangles", error);
-    decoded->splits = scree_allocate(memory, splits, sizeof *decoded->splits, "splits", error);
-    enum scree_status status = SCREE_E_MEMORY;
-    if (decoded->vertices != NULL && decoded->corners != NULL && decoded->splits != NULL)
-        status = surface_start(memory, finest->vertex_count, finest->triangle_count, &made->surface, error);
-    if (status == SCREE_OK) status = increment_start(memory, most, &made->surface, &made->increment, error);
-    if (status != SCREE_OK) {
-        if (error != NULL && error->status != SCREE_OK) status = error->status;
+    if (made != NULL) {
+        made->memory = memory;
+        made->header = header;
+        increment_start(memory, 0, &made->surface, &made->increment, &failure);
+    }
+    if (failure.status != SCREE_OK) {
         stream_decoder_free(made);
-        return status;
+        return scree_fail(error, failure.status, "%s", failure.text);
     }
     made->increment.coder = &made->coder;
     *decoder = made;
@@ -99,6 +130,11 @@ enum scree_status stream_decode_block(struct stream_decoder *decoder, const void
     if (decoder->failed || decoder->blocks == decoder->header->rung_count)
         return scree_fail(error, SCREE_E_ARGUMENT, "no block is left to decode");
     const struct scree_rung *rung = &decoder->header->rungs[decoder->blocks];
+    struct scree_error failure = {0};
+    if (!make_room(decoder, &failure)) {
+        decoder->failed = true;
+        return scree_fail(error, failure.status, "%s", failure.text);
+    }
     const struct progressive before = decoder->decoded;
     struct progressive *decoded = &decoder->decoded;
     range_coder_read(bytes, size_bytes, &decoder->coder);

@@ -445,6 +445,20 @@ enum scree_status increment_start(struct scree_memory *memory, uint32_t most, st
     return SCREE_OK;
 }
 
+bool increment_reserve(struct increment *increment, uint32_t most, struct scree_error *error) {
+    if (most <= increment->pending_capacity) return true;
+    struct pending *pending = scree_reallocate(increment->memory, increment->pending, most, sizeof *pending,
+                                               "an increment's vertices", error);
+    if (pending == NULL) return false;
+    increment->pending = pending;
+    uint32_t *waiting = scree_reallocate(increment->memory, increment->waiting, most, sizeof *waiting,
+                                         "an increment's vertices", error);
+    if (waiting == NULL) return false;
+    increment->waiting = waiting;
+    increment->pending_capacity = most;
+    return true;
+}
+
 void increment_release(struct increment *increment) {
     scree_release(increment->memory, increment->waiting);
     scree_release(increment->memory, increment->pending);

@@ -67,6 +67,9 @@ enum scree_status increment_start(struct scree_memory *memory, uint32_t most, st
                                   struct increment *increment, struct scree_error *error);
 void increment_release(struct increment *increment);
 
+/* Scratch for layers of up to `most` vertices, if it lacks. False: no memory, with a line. */
+bool increment_reserve(struct increment *increment, uint32_t most, struct scree_error *error);
+
 /* Forgets what has been learned. */
 void increment_forget(struct increment *increment);
 

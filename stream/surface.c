@@ -11,10 +11,30 @@ enum scree_status surface_start(struct scree_memory *memory, uint32_t vertex_cap
         scree_allocate(memory, vertex_capacity, sizeof *surface->vertices, "a stream's vertices", error);
     surface->triangles =
         scree_allocate(memory, triangle_capacity, sizeof *surface->triangles, "a stream's triangles", error);
+    surface->vertex_capacity = vertex_capacity;
     surface->triangle_capacity = triangle_capacity;
     if (surface->vertices != NULL && surface->triangles != NULL) return SCREE_OK;
     surface_release(memory, surface);
     return SCREE_E_MEMORY;
+}
+
+bool surface_reserve(struct scree_memory *memory, uint32_t vertex_capacity, uint32_t triangle_capacity,
+                     struct surface *surface, struct scree_error *error) {
+    if (vertex_capacity > surface->vertex_capacity) {
+        struct scree_vertex *vertices = scree_reallocate(memory, surface->vertices, vertex_capacity, sizeof *vertices,
+                                                         "a stream's vertices", error);
+        if (vertices == NULL) return false;
+        surface->vertices = vertices;
+        surface->vertex_capacity = vertex_capacity;
+    }
+    if (triangle_capacity > surface->triangle_capacity) {
+        struct surface_triangle *triangles = scree_reallocate(memory, surface->triangles, triangle_capacity,
+                                                              sizeof *triangles, "a stream's triangles", error);
+        if (triangles == NULL) return false;
+        surface->triangles = triangles;
+        surface->triangle_capacity = triangle_capacity;
+    }
+    return true;
 }
 
 void surface_release(struct scree_memory *memory, struct surface *surface) {

@@ -23,7 +23,7 @@ struct surface_triangle {
 };
 
 struct surface {
-    uint32_t vertex_count, triangle_count, triangle_capacity;
+    uint32_t vertex_count, triangle_count, vertex_capacity, triangle_capacity;
     struct scree_vertex *vertices;
     struct surface_triangle *triangles;
 };
@@ -63,6 +63,10 @@ enum scree_status surface_start(struct scree_memory *memory, uint32_t vertex_cap
                                 struct surface *surface, struct scree_error *error);
 void surface_rectangle(struct surface *surface, int32_t columns, int32_t rows, bool rising);
 void surface_release(struct scree_memory *memory, struct surface *surface);
+
+/* Room for more, if it lacks; fine on a zeroed surface. False: no memory, with a line. */
+bool surface_reserve(struct scree_memory *memory, uint32_t vertex_capacity, uint32_t triangle_capacity,
+                     struct surface *surface, struct scree_error *error);
 
 /* Puts vertex number vertex_count, which the caller has set, into the cavity. Fix-ups are appended to `splits` when it
  * is not NULL; it must have room for 3 * cavity->triangle_count of them, one split, and the new triangles. */
