@@ -1,5 +1,7 @@
 #include "src/build.h"
 
+#include "src/stream_place.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,8 +71,9 @@ static void sum_up(struct build *build, int min_zoom) {
     }
 }
 
-static enum scree_status write_manifest(const struct build_options *options, struct build *build,
+static enum scree_status finish_terrain(const struct build_options *options, struct build *build,
                                         struct tile_store *store, struct scree_error *error) {
+    sum_up(build, options->min_zoom);
     const struct raster_summary *summary = raster_summary(build->raster);
     struct layer layer = {.lattice = &build->lattice,
                           .min_zoom = options->min_zoom,
@@ -90,11 +93,60 @@ static enum scree_status write_manifest(const struct build_options *options, str
     return status;
 }
 
+#define MOST_RUNGS (RUNGS_A_ZOOM * (MAX_ZOOM + 1 + MAX_FINEST_OCTAVES) + 2)
+
+/* The rungs of all tiles written, coarse to fine. */
+static uint32_t rungs_of(const struct build_options *options, const struct build *build, int32_t *first,
+                         double tolerance_m[MOST_RUNGS]) {
+    bool has_finest = build->max_zoom == build->lattice.finest_zoom;
+    int last = has_finest ? build->ladder.finest_rung : RUNGS_A_ZOOM * build->max_zoom;
+    uint32_t count = 0;
+    *first = RUNGS_A_ZOOM * (options->min_zoom - 1);
+    for (int rung = *first; rung <= last; rung++) tolerance_m[count++] = ladder_rung_tolerance_m(&build->ladder, rung);
+    return count;
+}
+
+static enum scree_status finish_streams(const struct build_options *options, struct build *build,
+                                        struct tile_store *store, struct scree_error *error) {
+    const struct raster_summary *summary = raster_summary(build->raster);
+    bool has_finest = build->max_zoom == build->lattice.finest_zoom;
+    double tolerance_m[MOST_RUNGS];
+    for (int zoom = options->min_zoom; zoom <= build->max_zoom; zoom++) {
+        const struct pyramid_zoom *level = &build->pyramid.zooms[zoom];
+        build->streams[zoom] = (struct stream_zoom){.tiles = level->tiles.ids};
+        for (uint32_t i = 0; i < level->tiles.count; i++) stream_zoom_add(&build->streams[zoom], &level->streams[i]);
+    }
+    struct stream_manifest manifest = {.lattice = &build->lattice,
+                                       .min_zoom = options->min_zoom,
+                                       .max_zoom = build->max_zoom,
+                                       .crs_wkt = summary->crs_wkt,
+                                       .datum = summary->datum,
+                                       .attribution = summary->attribution,
+                                       .nodata_height_m = options->raster.nodata_height_m,
+                                       .height_exponent = stream_height_exponent(&build->ladder),
+                                       .finest_octaves = has_finest ? options->ladder.finest_octaves : 0,
+                                       .is_lossless = has_finest && options->ladder.lossless,
+                                       .rungs_per_increment =
+                                           options->rungs_per_increment > 0 ? options->rungs_per_increment : 1,
+                                       .tolerance_m = tolerance_m,
+                                       .zooms = build->streams};
+    manifest.rung_count = rungs_of(options, build, &manifest.first_rung, tolerance_m);
+    memcpy(manifest.bounds, summary->bounds, sizeof manifest.bounds);
+    char *text = scree_json_new(&manifest, error);
+    if (text == NULL) return SCREE_E_MEMORY;
+    enum scree_status status = tile_store_finish(store, "scree.json", text, error);
+    free(text);
+    return status;
+}
+
 enum scree_status build_run(const struct build_options *options, const struct pyramid_options *watch,
                             struct build *build, struct scree_error *error) {
-    struct tile_store *store = NULL;
-    enum scree_status status = tile_store_open(options->out, "terrain", "terrain", &store, error);
-    if (status != SCREE_OK) return status;
+    struct tile_store *terrain = NULL, *stream = NULL;
+    enum scree_status status = SCREE_OK;
+    if (!options->no_terrain) status = tile_store_open(options->out, "terrain", "terrain", &terrain, error);
+    if (status == SCREE_OK && !options->no_stream)
+        status = tile_store_open(options->out, "stream", "scree", &stream, error);
+    if (status != SCREE_OK) goto cleanup;
     struct pyramid_options pyramid = *watch;
     pyramid.lattice = &build->lattice;
     pyramid.ladder = &build->ladder;
@@ -104,14 +156,16 @@ enum scree_status build_run(const struct build_options *options, const struct py
     pyramid.max_zoom = build->max_zoom;
     pyramid.no_normals = options->no_normals;
     pyramid.plain = options->plain;
+    pyramid.rungs_per_increment = options->rungs_per_increment;
     pyramid.threads = options->threads;
-    pyramid.terrain = store;
+    pyramid.terrain = terrain;
+    pyramid.stream = stream;
     status = pyramid_build(&pyramid, &build->pyramid, error);
-    if (status == SCREE_OK) {
-        sum_up(build, options->min_zoom);
-        status = write_manifest(options, build, store, error);
-    }
-    tile_store_free(store);
+    if (status == SCREE_OK && terrain != NULL) status = finish_terrain(options, build, terrain, error);
+    if (status == SCREE_OK && stream != NULL) status = finish_streams(options, build, stream, error);
+cleanup:
+    tile_store_free(stream);
+    tile_store_free(terrain);
     return status;
 }
 

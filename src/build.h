@@ -1,5 +1,5 @@
-/* The main job from opened raster to manifest: chooses lattice and tolerances, builds the pyramid, writes layer.json.
- */
+/* The main job from opened raster to manifests: chooses lattice and tolerances, builds the pyramid, writes layer.json
+ * and scree.json. */
 #ifndef SCREE_BUILD_H
 #define SCREE_BUILD_H
 
@@ -15,7 +15,9 @@ struct build_options {
     const char *out;
     int min_zoom, max_zoom; /* max_zoom: ZOOM_FROM_SOURCE or a zoom */
     struct ladder_options ladder;
-    bool no_normals, plain;
+    bool no_terrain, no_stream;   /* products that are not written; what is there of them already is left alone */
+    bool no_normals, plain;       /* of terrain */
+    uint32_t rungs_per_increment; /* of streams; 0: 1 */
     int threads;
 };
 
@@ -25,7 +27,8 @@ struct build {
     struct lattice lattice;
     struct ladder ladder;
     struct pyramid pyramid;
-    struct layer_zoom zooms[MAX_ZOOM + 1]; /* what was written, by zoom */
+    struct layer_zoom zooms[MAX_ZOOM + 1];    /* what was written, by zoom */
+    struct stream_zoom streams[MAX_ZOOM + 1]; /* the same */
     int max_zoom;
 };
 

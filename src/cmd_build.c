@@ -16,7 +16,9 @@
 
 static const char help[] =
     "Usage: scree build DEM... -o OUT [OPTION]...\n"
-    "Makes OUT/terrain, a pyramid of quantized-mesh tiles, from any rasters that GDAL reads; later ones lie on top.\n"
+    "Makes OUT/terrain, a pyramid of quantized-mesh tiles, and OUT/stream, the same tiles at every scale as streams "
+    "of\n"
+    "detail increments, from any rasters that GDAL reads; later ones lie on top.\n"
     "The same input and options give the same bytes on any number of threads.\n\n"
     "  -o OUT               folder to write to; an earlier build in it is replaced\n"
     "  --profile NAME       geodetic (default; EPSG:4326, for Cesium) or local (the raster's own CRS and pixels)\n"
@@ -25,6 +27,12 @@ static const char help[] =
     "  --error M            largest vertical error in metres at zoom 0, halving with each zoom;\n"
     "                       default: an eighth of Cesium's level error, 9633\n"
     "  --error-at Z=M       the same for one zoom; may be given for several\n"
+    "  --products LIST      terrain, stream or terrain,stream (default); what is not named is left as it is\n"
+    "  --finest-octaves N   how often the finest zoom halves its error below that of its static tile, 0 to 8,\n"
+    "                       default 2; both products are made of meshes that come from there\n"
+    "  --lossless           streams end with every post; heights that are no multiple of the heights' step, which\n"
+    "                       is a power of two of at most 1 m, are rounded to it\n"
+    "  --rungs-per-increment N   rungs that each increment of a stream spans, default 1\n"
     "  --no-normals         leave out the octvertexnormals extension\n"
     "  --plain              no gzip: for servers that do not send Content-Encoding\n"
     "  -j N                 threads, default all cores\n"
@@ -59,6 +67,21 @@ static bool take_error_at(const char *text, struct ladder_options *ladder) {
     return true;
 }
 
+static bool take_products(const char *text, struct build_options *build) {
+    bool terrain = strcmp(text, "terrain") == 0, stream = strcmp(text, "stream") == 0;
+    bool both = strcmp(text, "terrain,stream") == 0 || strcmp(text, "stream,terrain") == 0;
+    build->no_terrain = stream;
+    build->no_stream = terrain;
+    return terrain || stream || both;
+}
+
+static bool take_count(const char *text, int least, int most, uint32_t *count) {
+    int value;
+    if (!argument_integer(text, least, most, &value)) return false;
+    *count = (uint32_t)value;
+    return true;
+}
+
 static bool take_profile(const char *text, enum profile *profile) {
     *profile = strcmp(text, "local") == 0 ? PROFILE_LOCAL : PROFILE_GEODETIC;
     return *profile == PROFILE_LOCAL || strcmp(text, "geodetic") == 0;
@@ -79,6 +102,16 @@ static const char *take_valued(const char *name, const char *value, struct build
                    : "--error wants metres above 0, not ";
     if (strcmp(name, "--error-at") == 0)
         return take_error_at(value, &build->ladder) ? NULL : "--error-at wants ZOOM=METRES, not ";
+    if (strcmp(name, "--products") == 0)
+        return take_products(value, build) ? NULL : "--products wants terrain, stream or terrain,stream, not ";
+    if (strcmp(name, "--finest-octaves") == 0)
+        return argument_integer(value, 0, MAX_FINEST_OCTAVES, &build->ladder.finest_octaves)
+                   ? NULL
+                   : "--finest-octaves wants 0 to 8, not ";
+    if (strcmp(name, "--rungs-per-increment") == 0)
+        return take_count(value, 1, SCREE_MAX_RUNGS, &build->rungs_per_increment)
+                   ? NULL
+                   : "--rungs-per-increment wants 1 to 256, not ";
     if (strcmp(name, "-j") == 0)
         return argument_integer(value, 1, MAX_THREADS, &build->threads) ? NULL : "-j wants 1 to 256 threads, not ";
     return "";
@@ -89,6 +122,7 @@ static int take(int argc, char **argv, int *at, struct arguments *arguments) {
     const char *name = argv[(*at)++], *value = *at < argc ? argv[*at] : NULL;
     if (strcmp(name, "-q") == 0) return arguments->quiet = true, EXIT_DONE;
     if (strcmp(name, "--plain") == 0) return arguments->build.plain = true, EXIT_DONE;
+    if (strcmp(name, "--lossless") == 0) return arguments->build.ladder.lossless = true, EXIT_DONE;
     if (strcmp(name, "--no-normals") == 0) return arguments->build.no_normals = true, EXIT_DONE;
     if (strcmp(name, "--config") == 0) {
         if (*at + 1 >= argc) return usage("--config wants a key and a value", "");
@@ -131,23 +165,43 @@ static void tell_tile(void *context, uint32_t done, uint32_t in_all) {
     progress_tell(context, done, in_all);
 }
 
-static void print_plan(const struct build *build) {
+static void print_plan(const struct build *build, bool has_streams) {
     const struct raster_summary *summary = raster_summary(build->raster);
     int finest = build->lattice.finest_zoom;
     fprintf(stderr, "%.6g to %.6g m; %s\n", summary->height_min_m, summary->height_max_m, summary->datum);
     fprintf(stderr, "finest zoom %d, largest error there %.4g m\n", finest, build->ladder.tolerance_m[finest]);
+    if (!has_streams) return;
+    fprintf(stderr, "finest rung %d, %s%.4g m; heights in steps of %.4g m\n", build->ladder.finest_rung,
+            build->ladder.lossless ? "every post; the one before: " : "largest error there ",
+            ladder_rung_tolerance_m(&build->ladder, build->ladder.finest_rung), build->ladder.height_unit_m);
 }
 
-static void print_result(const struct build *build, const struct build_options *options, double seconds) {
+static void print_terrain(const struct build *build, int min_zoom) {
     printf("zoom    tiles  vertices  triangles      bytes  tolerance m  max error m    SVO m\n");
-    for (int zoom = options->min_zoom; zoom <= build->max_zoom; zoom++) {
+    for (int zoom = min_zoom; zoom <= build->max_zoom; zoom++) {
         const struct layer_zoom *sum = &build->zooms[zoom];
         printf("%4d %8u %9llu %10llu %10llu %12.5g %12.5g %8.4g\n", zoom, sum->tile_count,
                (unsigned long long)sum->vertices, (unsigned long long)sum->triangles, (unsigned long long)sum->bytes,
                sum->tolerance_m, sum->max_error_m, sum->svo_m);
     }
+}
+
+static void print_streams(const struct build *build, int min_zoom) {
+    printf("zoom    tiles rungs         vertices                 bytes  max error m          SVO m\n");
+    for (int zoom = min_zoom; zoom <= build->max_zoom; zoom++) {
+        const struct stream_zoom *sum = &build->streams[zoom];
+        printf("%4d %8u %3d..%-3d %9llu..%-10llu %10llu %8.4g..%-8.4g %8.4g..%-8.4g\n", zoom, sum->tile_count,
+               sum->coarsest.rung, sum->finest.rung, (unsigned long long)sum->coarsest.vertices,
+               (unsigned long long)sum->finest.vertices, (unsigned long long)sum->bytes, sum->coarsest.error_max_m,
+               sum->finest.error_max_m, sum->coarsest.svo_max_m, sum->finest.svo_max_m);
+    }
+}
+
+static void print_result(const struct build *build, const struct build_options *options, double seconds) {
+    if (!options->no_terrain) print_terrain(build, options->min_zoom);
+    if (!options->no_stream) print_streams(build, options->min_zoom);
     double posts = (double)TILE_CELLS * TILE_CELLS * build->pyramid.zooms[build->lattice.finest_zoom].tiles.count;
-    printf("%s/terrain: %.1f s, %.2f million posts a second\n", options->out, seconds, posts * 1e-6 / seconds);
+    printf("%s: %.1f s, %.2f million posts a second\n", options->out, seconds, posts * 1e-6 / seconds);
 }
 
 static int run(const struct arguments *arguments) {
@@ -156,7 +210,7 @@ static int run(const struct arguments *arguments) {
     struct progress progress;
     enum scree_status status = build_prepare(&arguments->build, &build, &error);
     if (status == SCREE_OK) {
-        if (!arguments->quiet) print_plan(&build);
+        if (!arguments->quiet) print_plan(&build, !arguments->build.no_stream);
         progress_start(&progress, "tiles", (double)TILE_CELLS * TILE_CELLS, arguments->quiet);
         struct pyramid_options watch = {.stop = &stop_asked, .progress = tell_tile, .progress_context = &progress};
         status = build_run(&arguments->build, &watch, &build, &error);
@@ -166,7 +220,7 @@ static int run(const struct arguments *arguments) {
     build_release(&build);
     if (status == SCREE_OK) return EXIT_DONE;
     if (stop_asked) {
-        fprintf(stderr, "scree build: interrupted; the tiles that are there are whole, layer.json is not written\n");
+        fprintf(stderr, "scree build: interrupted; the tiles that are there are whole, no manifest is written\n");
         return EXIT_INTERRUPTED;
     }
     fprintf(stderr, "scree build: %s\n", error.text);
@@ -176,7 +230,8 @@ static int run(const struct arguments *arguments) {
 int command_build(int argc, char **argv) {
     for (int i = 1; i < argc; i++)
         if (strcmp(argv[i], "--help") == 0) return fputs(help, stdout) < 0 ? EXIT_FAILED : EXIT_DONE;
-    struct arguments arguments = {.build = {.max_zoom = ZOOM_FROM_SOURCE}};
+    struct arguments arguments = {
+        .build = {.max_zoom = ZOOM_FROM_SOURCE, .ladder = {.finest_octaves = DEFAULT_FINEST_OCTAVES}}};
     arguments.build.threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
     if (arguments.build.threads < 1) arguments.build.threads = 1;
     if ((arguments.inputs = calloc((size_t)argc, sizeof *arguments.inputs)) == NULL) {

@@ -5,7 +5,9 @@
 #define STEPS_IN_TOLERANCE 16 /* heights are written so much finer than the tolerance */
 #define STEEPEST_TILE      4  /* relief of a tile in widths of it that height codes always have room for */
 #define HEIGHT_CODES       32767
-#define LARGEST_UNITS      1e9
+#define STEPS_IN_FINEST    8      /* the same for the finest rung: each bit of heights is a bit of every vertex there */
+#define LARGEST_UNITS      0x1p24 /* heights are floats while tiles are simplified: all of them are exact */
+#define LOSSLESS_UNIT_M    1.0    /* so that sources in whole metres are kept to the last bit */
 
 static double power_of_two_below(double value) {
     return exp2(floor(log2(value)));
@@ -34,14 +36,73 @@ static enum scree_status set_tolerances(const struct lattice *lattice, const str
     return SCREE_OK;
 }
 
-/* Fine against the tolerance, coarse enough for the relief that a tile of the zoom may have. */
-static double border_step_m(const struct lattice *lattice, const struct ladder_options *options, double tolerance_m,
+/* The least step in which the relief that a tile of the zoom may have can be written. */
+static double relief_step_m(const struct lattice *lattice, const struct ladder_options *options, double tolerance_m,
                             int zoom) {
     double east_m, north_m;
     lattice_steps_m(lattice, (double)(lattice->rows - 1) / 2, &east_m, &north_m);
     double width_m = (double)lattice_tile_span(lattice, zoom) * fmax(east_m, north_m);
     double relief_m = fmax(fmin(options->relief_m, STEEPEST_TILE * width_m), tolerance_m / HEIGHT_CODES);
-    return fmax(power_of_two_below(tolerance_m / STEPS_IN_TOLERANCE), power_of_two_above(relief_m / HEIGHT_CODES));
+    return power_of_two_above(relief_m / HEIGHT_CODES);
+}
+
+/* Fine against the tolerance, coarse enough for the relief. */
+static double border_step_m(const struct lattice *lattice, const struct ladder_options *options, double tolerance_m,
+                            int zoom) {
+    return fmax(power_of_two_below(tolerance_m / STEPS_IN_TOLERANCE),
+                relief_step_m(lattice, options, tolerance_m, zoom));
+}
+
+/* What the mesh of a static tile of the finest zoom may be off, so that the tile as written keeps to its tolerance. */
+static double static_bound_m(const struct ladder *ladder) {
+    int finest = ladder->finest_zoom;
+    bool is_rounded = ladder->border_step[finest] > 1;
+    return ladder->tolerance_m[finest] - (is_rounded ? 0.5 * ladder->border_step[finest] * ladder->height_unit_m : 0);
+}
+
+double ladder_rung_tolerance_m(const struct ladder *ladder, int rung) {
+    int finest = ladder->finest_zoom;
+    if (ladder->lossless && rung == ladder->finest_rung) rung--;
+    int zoom = rung >= 0 ? rung / RUNGS_A_ZOOM : -((RUNGS_A_ZOOM - 1 - rung) / RUNGS_A_ZOOM);
+    int beyond = rung - RUNGS_A_ZOOM * zoom; /* rungs finer than that zoom: 0 to 3 */
+    double tolerance_m, ratio = 0.5;
+    if (zoom >= finest)
+        tolerance_m = ldexp(ladder->tolerance_m[finest], finest - zoom);
+    else if (zoom < 0)
+        tolerance_m = ldexp(ladder->tolerance_m[0], -zoom);
+    else {
+        tolerance_m = ladder->tolerance_m[zoom];
+        ratio = ladder->tolerance_m[zoom + 1] / tolerance_m;
+    }
+    double half = sqrt(ratio), quarter = sqrt(half); /* the same on every machine, unlike pow() */
+    const double shares[RUNGS_A_ZOOM] = {1, quarter, half, half * quarter};
+    return fmin(tolerance_m * shares[beyond], zoom >= finest ? static_bound_m(ladder) : INFINITY);
+}
+
+/* Meshes count heights as finely as the finest rung wants it, which static tiles may be unable to follow. */
+static double height_unit_m(const struct ladder *ladder, const struct ladder_options *options, double static_step_m) {
+    double finest_m = ladder_rung_tolerance_m(ladder, ladder->finest_rung);
+    double unit_m = fmin(static_step_m, power_of_two_below(finest_m / STEPS_IN_FINEST));
+    if (options->lossless) unit_m = fmin(unit_m, LOSSLESS_UNIT_M);
+    while (options->largest_height_m / unit_m > LARGEST_UNITS) unit_m *= 2;
+    return unit_m;
+}
+
+static enum scree_status check_steps(const struct ladder *ladder, const struct ladder_options *options,
+                                     double static_step_m, struct scree_error *error) {
+    int finest = ladder->finest_zoom;
+    if (ladder->tolerance_m[finest] < static_step_m)
+        return scree_fail(error, SCREE_E_ARGUMENT,
+                          "a tolerance of %g m at zoom %d is finer than the steps of %g m in which a relief of %g m is "
+                          "written; ask for --error-at %d=%g or more",
+                          ladder->tolerance_m[finest], finest, static_step_m, options->relief_m, finest, static_step_m);
+    double finest_m = ladder_rung_tolerance_m(ladder, ladder->finest_rung);
+    if (finest_m < ladder->height_unit_m)
+        return scree_fail(error, SCREE_E_ARGUMENT,
+                          "the tolerance of the finest rung, %g m, is finer than the steps of %g m in which heights of "
+                          "%g m are counted; ask for larger tolerances or fewer --finest-octaves",
+                          finest_m, ladder->height_unit_m, options->largest_height_m);
+    return SCREE_OK;
 }
 
 enum scree_status ladder_make(const struct lattice *lattice, const struct ladder_options *options,
@@ -50,16 +111,17 @@ enum scree_status ladder_make(const struct lattice *lattice, const struct ladder
     enum scree_status status = set_tolerances(lattice, options, ladder, error);
     if (status != SCREE_OK) return status;
     int finest = lattice->finest_zoom;
-    ladder->height_unit_m = border_step_m(lattice, options, ladder->tolerance_m[finest], finest);
-    if (ladder->tolerance_m[finest] < ladder->height_unit_m)
-        return scree_fail(error, SCREE_E_ARGUMENT,
-                          "a tolerance of %g m at zoom %d is finer than the steps of %g m in which a relief of %g m is "
-                          "written; ask for --error-at %d=%g or more",
-                          ladder->tolerance_m[finest], finest, ladder->height_unit_m, options->relief_m, finest,
-                          ladder->height_unit_m);
-    while (options->largest_height_m / ladder->height_unit_m > LARGEST_UNITS) ladder->height_unit_m *= 2;
+    ladder->finest_zoom = finest;
+    ladder->finest_rung = RUNGS_A_ZOOM * (finest + options->finest_octaves) + (options->lossless ? 1 : 0);
+    ladder->coarsest_rung = -RUNGS_A_ZOOM;
+    ladder->lossless = options->lossless;
+    double static_step_m = border_step_m(lattice, options, ladder->tolerance_m[finest], finest);
+    ladder->height_unit_m = height_unit_m(ladder, options, static_step_m);
+    if ((status = check_steps(ladder, options, static_step_m, error)) != SCREE_OK) return status;
     for (int zoom = finest; zoom >= 0; zoom--) {
-        double steps = border_step_m(lattice, options, ladder->tolerance_m[zoom], zoom) / ladder->height_unit_m;
+        double step_m = zoom == finest ? relief_step_m(lattice, options, ladder->tolerance_m[zoom], zoom)
+                                       : border_step_m(lattice, options, ladder->tolerance_m[zoom], zoom);
+        double steps = step_m / ladder->height_unit_m;
         int32_t finer = zoom < finest ? ladder->border_step[zoom + 1] : 1;
         ladder->border_step[zoom] = steps > finer ? (int32_t)fmin(steps, 1 << 30) : finer;
     }

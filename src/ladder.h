@@ -1,4 +1,9 @@
-/* The scale ladder: which vertical error each zoom may have, and in which steps its heights are written. Pure. */
+/* The scale ladder: which vertical error each zoom and each rung may have, and in which steps heights are written.
+ * Pure.
+ *
+ * Rungs are a quarter of an octave apart and grow with detail. Rung 4z has the tolerance of zoom z; between two zooms
+ * tolerances are interpolated geometrically, beyond the finest and the coarsest they go on by 2^(-1/4) a rung. A tile
+ * of zoom z goes from rung 4z to rung 4(z - 1); one of the finest zoom begins at the finest rung. */
 #ifndef SCREE_LADDER_H
 #define SCREE_LADDER_H
 
@@ -16,18 +21,32 @@
  * times the triangles and 1.8-2.2 times the bytes. */
 #define DEFAULT_TOLERANCE_SHARE 0.125
 
+#define RUNGS_A_ZOOM           4
+#define DEFAULT_FINEST_OCTAVES 2
+#define MAX_FINEST_OCTAVES     8
+
 struct ladder_options {
     double root_error_m;             /* tolerance of zoom 0, halving with each zoom; 0: the default */
     double error_at_m[MAX_ZOOM + 1]; /* overrules single zooms; 0: not given */
     double relief_m;                 /* of the whole source */
     double largest_height_m;         /* absolute */
+    int finest_octaves;              /* how far the finest zoom goes on below its tolerance */
+    bool lossless;                   /* the finest rung is the full grid */
 };
 
 struct ladder {
     double tolerance_m[MAX_ZOOM + 1];  /* by zoom, falling */
     double height_unit_m;              /* power of two: what meshes count heights in */
-    int32_t border_step[MAX_ZOOM + 1]; /* height units: border heights of a zoom are multiples of it */
+    int32_t border_step[MAX_ZOOM + 1]; /* height units: border heights of a zoom's static tiles are multiples of it */
+    int finest_zoom;
+    int finest_rung;   /* what tiles of the finest zoom begin at */
+    int coarsest_rung; /* what tiles of zoom 0 end at */
+    bool lossless;     /* the finest rung is the full grid: its tolerance is that of the rung before it */
 };
+
+/* The tolerance of a rung, finest_rung to coarsest_rung: what its mesh keeps to. Where the steps of static heights are
+ * coarser than those of meshes, half a step is left at the finest zoom for rounding to them. */
+double ladder_rung_tolerance_m(const struct ladder *ladder, int rung);
 
 /* SCREE_E_ARGUMENT when tolerances grow with the zoom, or the finest is below the step of the heights. */
 enum scree_status ladder_make(const struct lattice *lattice, const struct ladder_options *options,

@@ -2,7 +2,6 @@
 
 #include "src/tile_build.h"
 
-#include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -65,7 +64,8 @@ static enum scree_status list_tiles(const struct pyramid_options *options, struc
     level->tiles.count = kept;
     level->statistics =
         scree_allocate(&pyramid->memory, kept, sizeof *level->statistics, "figures of all tiles", error);
-    return level->statistics != NULL ? SCREE_OK : SCREE_E_MEMORY;
+    level->streams = scree_allocate(&pyramid->memory, kept, sizeof *level->streams, "figures of all tiles", error);
+    return level->statistics != NULL && level->streams != NULL ? SCREE_OK : SCREE_E_MEMORY;
 }
 
 /* A root may be on the list without being touched by data. */
@@ -88,11 +88,6 @@ static bool stopped(struct work *work) {
     return stop || (work->options->stop != NULL && *work->options->stop != 0);
 }
 
-static struct terrain_tile_statistics *statistics_of(const struct work *work, struct tile_id id) {
-    const struct pyramid_zoom *level = &work->pyramid->zooms[id.zoom];
-    return &level->statistics[tile_list_find(&level->tiles, id)];
-}
-
 static void tell_progress(struct work *work) {
     const struct pyramid_options *options = work->options;
     pthread_mutex_lock(&work->lock);
@@ -103,34 +98,48 @@ static void tell_progress(struct work *work) {
     pthread_mutex_unlock(&work->lock);
 }
 
-/* Writes a tile that is at its zoom's tolerance, then hands it up unless it is a root. */
-static enum scree_status finish_tile(struct work *work, struct tile_id id, struct tile *tile, double max_error_m,
-                                     struct coarse_tile **coarse, struct scree_error *error) {
+static bool is_written(const struct work *work, struct tile_id id) {
+    return id.zoom >= work->options->min_zoom && id.zoom <= work->options->max_zoom;
+}
+
+/* Writes what is wanted of a tile that has come to the rung of its zoom, takes it on and hands it up. */
+static enum scree_status finish_tile(struct work *work, struct tile_walk *walk, struct coarse_tile **coarse,
+                                     struct scree_error *error) {
+    const struct pyramid_options *options = work->options;
+    struct pyramid_zoom *level = &work->pyramid->zooms[walk->id.zoom];
+    uint32_t index = tile_list_find(&level->tiles, walk->id);
     enum scree_status status = SCREE_OK;
-    if (id.zoom >= work->options->min_zoom && id.zoom <= work->options->max_zoom) {
-        struct terrain_tile_statistics *statistics = statistics_of(work, id);
-        status = tile_build_write(&work->plan, id, tile, work->options->terrain, statistics, error);
-        statistics->tolerance_m = work->plan.ladder->tolerance_m[id.zoom];
-        statistics->max_error_m = max_error_m;
-        statistics->mmqe_m2 = tile_mmqe_m2(tile);
-    }
-    if (status == SCREE_OK && id.zoom > 0) return tile_build_hand_up(&work->plan, id, tile, coarse, error);
-    tile_release(tile);
+    if (is_written(work, walk->id) && options->terrain != NULL)
+        status = tile_build_write(&work->plan, walk, options->terrain, &level->statistics[index], error);
+    if (status == SCREE_OK) status = tile_build_hand_up(&work->plan, walk, coarse, error);
+    if (status == SCREE_OK && walk->is_recorded)
+        status = tile_build_write_stream(&work->plan, walk, options->stream, &level->streams[index], error);
+    tile_walk_release(walk);
     return status;
+}
+
+static bool is_recorded(const struct work *work, struct tile_id id) {
+    return work->options->stream != NULL && is_written(work, id);
 }
 
 static enum scree_status parent_from(struct work *work, struct tile_id id, struct coarse_tile *const children[4],
                                      struct scree_memory *memory, struct coarse_tile **coarse,
                                      struct scree_error *error) {
-    struct tile tile;
-    double max_error_m = 0;
-    const struct coarse_tile *views[4];
-    for (int i = 0; i < 4; i++) {
-        views[i] = children[i];
-        if (children[i] != NULL) max_error_m = fmax(max_error_m, children[i]->max_error_m);
-    }
-    enum scree_status status = tile_build_parent(&work->plan, id, views, memory, &tile, error);
-    return status == SCREE_OK ? finish_tile(work, id, &tile, max_error_m, coarse, error) : status;
+    struct tile_walk walk;
+    const struct coarse_tile *views[4] = {children[0], children[1], children[2], children[3]};
+    enum scree_status status = tile_build_parent(&work->plan, id, views, is_recorded(work, id), memory, &walk, error);
+    return status == SCREE_OK ? finish_tile(work, &walk, coarse, error) : status;
+}
+
+static enum scree_status finest_tile(struct worker *worker, struct tile_id id, struct scree_memory *memory,
+                                     struct coarse_tile **coarse, struct scree_error *error) {
+    struct work *work = worker->work;
+    struct tile_walk walk;
+    enum scree_status status =
+        tile_build_finest(&work->plan, id, worker->reader, is_recorded(work, id), memory, &walk, error);
+    if (status == SCREE_OK) status = finish_tile(work, &walk, coarse, error);
+    tell_progress(work);
+    return status;
 }
 
 static struct tile_id child_of(struct tile_id id, int child) {
@@ -141,13 +150,17 @@ static bool in_lattice(const struct work *work, struct tile_id id) {
     return lattice_tile_window(work->options->lattice, id).columns > 0;
 }
 
+/* A tile that no data touch; only roots are written. */
 static enum scree_status level_tile(struct work *work, struct tile_id id, struct scree_memory *memory,
                                     struct coarse_tile **coarse, struct scree_error *error) {
-    struct tile tile;
-    enum scree_status status = tile_build_level(&work->plan, id, memory, &tile, error);
+    struct tile_walk walk;
+    bool record = id.zoom == 0 && is_recorded(work, id);
+    enum scree_status status = tile_build_level(&work->plan, id, record, memory, &walk, error);
     if (status != SCREE_OK) return status;
-    if (id.zoom == 0) return finish_tile(work, id, &tile, tile_max_error_m(&tile), coarse, error);
-    return tile_build_hand_up(&work->plan, id, &tile, coarse, error);
+    if (id.zoom == 0) return finish_tile(work, &walk, coarse, error);
+    status = tile_build_hand_up(&work->plan, &walk, coarse, error);
+    tile_walk_release(&walk);
+    return status;
 }
 
 /* A tile with all that lies below it. */
@@ -156,15 +169,9 @@ static enum scree_status subtree(struct worker *worker, struct tile_id id, struc
     struct work *work = worker->work;
     enum scree_status status = SCREE_OK;
     struct coarse_tile *children[4] = {NULL, NULL, NULL, NULL};
-    struct tile tile;
     if (stopped(work)) return scree_fail(error, SCREE_E_INTERRUPTED, "interrupted");
     if (!touched(work, id)) return level_tile(work, id, memory, coarse, error);
-    if (id.zoom == work->options->lattice->finest_zoom) {
-        status = tile_build_finest(&work->plan, id, worker->reader, memory, &tile, error);
-        if (status == SCREE_OK) status = finish_tile(work, id, &tile, tile_max_error_m(&tile), coarse, error);
-        tell_progress(work);
-        return status;
-    }
+    if (id.zoom == work->options->lattice->finest_zoom) return finest_tile(worker, id, memory, coarse, error);
     for (int child = 0; child < 4 && status == SCREE_OK; child++)
         if (in_lattice(work, child_of(id, child)))
             status = subtree(worker, child_of(id, child), memory, &children[child], error);
@@ -336,10 +343,10 @@ static void release_work(struct work *work) {
 enum scree_status pyramid_build(const struct pyramid_options *options, struct pyramid *pyramid,
                                 struct scree_error *error) {
     enum scree_status status = SCREE_OK;
-    struct work work = {
-        .options = options,
-        .pyramid = pyramid,
-        .plan = {options->lattice, options->ladder, options->nodata_height_m, options->no_normals, options->plain}};
+    struct work work = {.options = options,
+                        .pyramid = pyramid,
+                        .plan = {options->lattice, options->ladder, options->nodata_height_m, options->no_normals,
+                                 options->plain, options->rungs_per_increment}};
     memset(pyramid, 0, sizeof *pyramid);
     if (pthread_mutex_init(&work.lock, NULL) != 0) return scree_fail(error, SCREE_E_LIMIT, "no lock can be made");
     for (int zoom = 0; zoom <= options->lattice->finest_zoom && status == SCREE_OK; zoom++)
@@ -357,6 +364,7 @@ enum scree_status pyramid_build(const struct pyramid_options *options, struct py
 
 void pyramid_free(struct pyramid *pyramid) {
     for (int zoom = 0; zoom <= MAX_ZOOM; zoom++) {
+        scree_release(&pyramid->memory, pyramid->zooms[zoom].streams);
         scree_release(&pyramid->memory, pyramid->zooms[zoom].statistics);
         tile_list_free(&pyramid->memory, &pyramid->zooms[zoom].tiles);
     }

@@ -8,6 +8,7 @@
 
 #include "src/ladder.h"
 #include "src/raster_io.h"
+#include "src/scree_json.h"
 #include "src/terrain_tile.h"
 #include "src/tile_list.h"
 #include "src/tile_store_io.h"
@@ -18,6 +19,7 @@
 struct pyramid_zoom {
     struct tile_list tiles;
     struct terrain_tile_statistics *statistics; /* one a tile, filled by the build */
+    struct stream_tile_figures *streams;        /* the same */
 };
 
 struct pyramid_options {
@@ -28,8 +30,9 @@ struct pyramid_options {
     int min_zoom, max_zoom; /* tiles of other zooms are made but not written */
     bool no_normals, plain; /* without octvertexnormals; without gzip */
     int threads;            /* at least 1 */
-    struct tile_store *terrain;
-    const volatile sig_atomic_t *stop; /* set from outside: give up; may be NULL */
+    uint32_t rungs_per_increment;
+    struct tile_store *terrain, *stream; /* the products that are wanted; the others are NULL */
+    const volatile sig_atomic_t *stop;   /* set from outside: give up; may be NULL */
     /* called under a lock, with the number of tiles of the finest zoom that are done */
     void (*progress)(void *context, uint32_t tiles_done, uint32_t tiles_in_all);
     void *progress_context;

@@ -1,8 +1,12 @@
 #include "src/tile_build.h"
 
 #include "src/quantized_mesh.h"
+#include "src/stream_place.h"
+#include "stream/encode.h"
+#include "stream/stream_header.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Corners of the tiles of this zoom stay at all zooms above it: over longer distances a globe is no height field over
  * a plane, and its roundness must not hang on measured errors alone. */
@@ -41,13 +45,98 @@ static struct code_frame frame_of(const struct tile_plan *plan, struct tile_id i
     return (struct code_frame){span, id.x % 2 != 0 ? (int32_t)(span / 2) : 0, id.y % 2 != 0 ? (int32_t)(span / 2) : 0};
 }
 
-static enum scree_status advance_to(const struct tile_plan *plan, struct tile_id id, int zoom, struct tile *tile,
-                                    struct scree_error *error) {
-    tile_set_codes(tile, frame_of(plan, id, zoom));
-    return tile_advance(tile, plan->ladder->tolerance_m[zoom], error);
+/* ---- from rung to rung ---- */
+
+static int coarsest_rung(struct tile_id id) {
+    return RUNGS_A_ZOOM * (id.zoom - 1);
 }
 
-enum scree_status tile_build_finest(const struct tile_plan *plan, struct tile_id id, struct raster_reader *reader,
+/* The zoom whose static tile the rung is, or is on the way to. */
+static int zoom_ahead(struct tile_id id, int rung) {
+    return rung >= RUNGS_A_ZOOM * id.zoom ? id.zoom : id.zoom - 1;
+}
+
+/* Whether static tiles are made of the rung. */
+static bool is_static(int rung, int zoom) {
+    return zoom >= 0 && rung == RUNGS_A_ZOOM * zoom;
+}
+
+static enum scree_status mark(struct tile_walk *walk, double max_error_m, struct scree_error *error) {
+    if (!walk->is_recorded) return SCREE_OK;
+    const struct recording_rung rung = {
+        .rung = walk->rung, .mmqe_m2 = (float)tile_mmqe_m2(&walk->tile), .max_error_m = (float)max_error_m};
+    return recorder_mark(&walk->recorder, &rung, error);
+}
+
+/* From here on the tile's way is part of its stream. */
+static enum scree_status start_recording(struct tile_walk *walk, bool record, double max_error_m,
+                                         struct scree_error *error) {
+    if (!record) return SCREE_OK;
+    enum scree_status status = recorder_start(walk->tile.memory, &walk->tile.mesh, &walk->recorder, error);
+    if (status != SCREE_OK) return status;
+    walk->is_recorded = true;
+    walk->tile.simplifier.options.observer = &walk->recorder.observer;
+    return mark(walk, max_error_m, error);
+}
+
+static enum scree_status take_to(const struct tile_plan *plan, struct tile_walk *walk, int rung,
+                                 struct scree_error *error) {
+    int zoom = zoom_ahead(walk->id, rung);
+    double tolerance_m = ladder_rung_tolerance_m(plan->ladder, rung);
+    walk->rung = rung;
+    if (zoom >= 0) tile_set_codes(&walk->tile, frame_of(plan, walk->id, zoom));
+    return is_static(rung, zoom) ? tile_advance(&walk->tile, tolerance_m, error)
+                                 : tile_advance_between(&walk->tile, tolerance_m, error);
+}
+
+static enum scree_status walk_to(const struct tile_plan *plan, struct tile_walk *walk, int last_rung,
+                                 struct scree_error *error) {
+    enum scree_status status = SCREE_OK;
+    while (walk->rung > last_rung && status == SCREE_OK) {
+        status = take_to(plan, walk, walk->rung - 1, error);
+        if (status == SCREE_OK && walk->is_recorded) status = mark(walk, tile_max_error_m(&walk->tile), error);
+    }
+    return status;
+}
+
+#define MOST_RUNGS (RUNGS_A_ZOOM * (MAX_FINEST_OCTAVES + 1) + 1) /* of a tile, the full grid apart */
+
+/* All rungs from `first` to the coarsest one of which static tiles are made. */
+static enum scree_status look_ahead(const struct tile_plan *plan, struct tile_walk *walk, int first,
+                                    struct scree_error *error) {
+    struct tile_rung rungs[MOST_RUNGS];
+    int count = 0, last = walk->id.zoom > 0 ? coarsest_rung(walk->id) : 0;
+    for (int rung = first; rung >= last; rung--) {
+        int zoom = zoom_ahead(walk->id, rung);
+        rungs[count] = (struct tile_rung){.tolerance_m = ladder_rung_tolerance_m(plan->ladder, rung)};
+        if (is_static(rung, zoom)) rungs[count].codes = frame_of(plan, walk->id, zoom);
+        count++;
+    }
+    return tile_look_ahead(&walk->tile, rungs, count, error);
+}
+
+/* From the full grid to the rung of the finest zoom. */
+static enum scree_status take_grid_down(const struct tile_plan *plan, struct tile_walk *walk, bool record,
+                                        struct scree_error *error) {
+    const struct ladder *ladder = plan->ladder;
+    enum scree_status status = look_ahead(plan, walk, ladder->finest_rung - (ladder->lossless ? 1 : 0), error);
+    walk->rung = ladder->finest_rung;
+    if (status == SCREE_OK && !ladder->lossless) status = take_to(plan, walk, ladder->finest_rung, error);
+    if (status == SCREE_OK) status = start_recording(walk, record, tile_max_error_m(&walk->tile), error);
+    if (status == SCREE_OK) status = walk_to(plan, walk, RUNGS_A_ZOOM * walk->id.zoom, error);
+    if (status == SCREE_OK) walk->max_error_m = tile_max_error_m(&walk->tile);
+    return status;
+}
+
+static void begin(struct tile_walk *walk, struct tile_id id) {
+    memset(walk, 0, sizeof *walk);
+    walk->id = id;
+    walk->rung = RUNGS_A_ZOOM * id.zoom;
+}
+
+/* ---- the three makers ---- */
+
+static enum scree_status read_posts(const struct tile_plan *plan, struct tile_id id, struct raster_reader *reader,
                                     struct scree_memory *memory, struct tile *tile, struct scree_error *error) {
     struct lattice_window window = lattice_tile_window(plan->lattice, id);
     float east_drop_m[TILE_CELLS + 1];
@@ -63,9 +152,18 @@ enum scree_status tile_build_finest(const struct tile_plan *plan, struct tile_id
         lattice_steps_m(plan->lattice, (double)(window.y + y), &east_m[y], &north_m[y]);
     struct tile_posts posts = {heights_m + MARGIN * columns + MARGIN, columns, east_m, north_m};
     status = tile_from_posts(memory, &geometry, &posts, tile, error);
-    if (status == SCREE_OK) status = advance_to(plan, id, id.zoom, tile, error);
 cleanup:
     scree_release(memory, heights_m);
+    return status;
+}
+
+enum scree_status tile_build_finest(const struct tile_plan *plan, struct tile_id id, struct raster_reader *reader,
+                                    bool record, struct scree_memory *memory, struct tile_walk *walk,
+                                    struct scree_error *error) {
+    begin(walk, id);
+    enum scree_status status = read_posts(plan, id, reader, memory, &walk->tile, error);
+    if (status == SCREE_OK) status = take_grid_down(plan, walk, record, error);
+    if (status != SCREE_OK) tile_walk_release(walk);
     return status;
 }
 
@@ -81,22 +179,35 @@ static int32_t level_step(const struct tile_plan *plan, struct tile_id id, const
     return (int32_t)step;
 }
 
-enum scree_status tile_build_level(const struct tile_plan *plan, struct tile_id id, struct scree_memory *memory,
-                                   struct tile *tile, struct scree_error *error) {
+enum scree_status tile_build_level(const struct tile_plan *plan, struct tile_id id, bool record,
+                                   struct scree_memory *memory, struct tile_walk *walk, struct scree_error *error) {
     float east_drop_m[TILE_CELLS + 1];
     struct tile_geometry geometry = geometry_of(plan, id, east_drop_m);
     int32_t step = level_step(plan, id, &geometry);
-    enum scree_status status = tile_from_level(memory, &geometry, step, plan->nodata_height_m, tile, error);
-    return status == SCREE_OK ? advance_to(plan, id, id.zoom, tile, error) : status;
+    begin(walk, id);
+    enum scree_status status = tile_from_level(memory, &geometry, step, plan->nodata_height_m, &walk->tile, error);
+    if (status == SCREE_OK) status = take_to(plan, walk, walk->rung, error);
+    if (status == SCREE_OK) walk->max_error_m = tile_max_error_m(&walk->tile);
+    if (status == SCREE_OK) status = start_recording(walk, record, walk->max_error_m, error);
+    if (status != SCREE_OK) tile_walk_release(walk);
+    return status;
 }
 
 enum scree_status tile_build_parent(const struct tile_plan *plan, struct tile_id id,
-                                    const struct coarse_tile *const children[4], struct scree_memory *memory,
-                                    struct tile *tile, struct scree_error *error) {
+                                    const struct coarse_tile *const children[4], bool record,
+                                    struct scree_memory *memory, struct tile_walk *walk, struct scree_error *error) {
     float east_drop_m[TILE_CELLS + 1];
     struct tile_geometry geometry = geometry_of(plan, id, east_drop_m);
-    return tile_from_children(memory, &geometry, children, tile, error);
+    begin(walk, id);
+    for (int i = 0; i < 4; i++)
+        if (children[i] != NULL) walk->max_error_m = fmax(walk->max_error_m, children[i]->max_error_m);
+    enum scree_status status = tile_from_children(memory, &geometry, children, &walk->tile, error);
+    if (status == SCREE_OK) status = start_recording(walk, record, walk->max_error_m, error);
+    if (status != SCREE_OK) tile_walk_release(walk);
+    return status;
 }
+
+/* ---- what becomes of it ---- */
 
 static float *vertex_slopes_new(const struct tile *tile, const struct scree_mesh *mesh, struct scree_error *error) {
     float *slopes = scree_allocate(tile->memory, 2 * (size_t)mesh->vertex_count, sizeof *slopes, "normals", error);
@@ -108,9 +219,10 @@ static float *vertex_slopes_new(const struct tile *tile, const struct scree_mesh
     return slopes;
 }
 
-enum scree_status tile_build_write(const struct tile_plan *plan, struct tile_id id, const struct tile *tile,
-                                   struct tile_store *store, struct terrain_tile_statistics *statistics,
-                                   struct scree_error *error) {
+enum scree_status tile_build_write(const struct tile_plan *plan, const struct tile_walk *walk, struct tile_store *store,
+                                   struct terrain_tile_statistics *statistics, struct scree_error *error) {
+    const struct tile *tile = &walk->tile;
+    struct tile_id id = walk->id;
     struct scree_memory *memory = tile->memory;
     struct scree_mesh mesh = {0};
     unsigned char *bytes = NULL;
@@ -135,6 +247,9 @@ enum scree_status tile_build_write(const struct tile_plan *plan, struct tile_id 
     statistics->vertices = mesh.vertex_count;
     statistics->triangles = mesh.triangle_count;
     statistics->bytes = written_bytes;
+    statistics->tolerance_m = plan->ladder->tolerance_m[id.zoom];
+    statistics->max_error_m = walk->max_error_m;
+    statistics->mmqe_m2 = tile_mmqe_m2(tile);
 cleanup:
     scree_release(memory, bytes);
     scree_release(memory, slopes);
@@ -143,10 +258,40 @@ cleanup:
     return status;
 }
 
-enum scree_status tile_build_hand_up(const struct tile_plan *plan, struct tile_id id, struct tile *tile,
-                                     struct coarse_tile **coarse, struct scree_error *error) {
-    enum scree_status status = advance_to(plan, id, id.zoom - 1, tile, error);
-    if (status == SCREE_OK) status = tile_hand_up_new(tile, coarse, error);
-    tile_release(tile);
+enum scree_status tile_build_hand_up(const struct tile_plan *plan, struct tile_walk *walk, struct coarse_tile **coarse,
+                                     struct scree_error *error) {
+    bool is_root = walk->id.zoom == 0;
+    enum scree_status status = SCREE_OK;
+    *coarse = NULL;
+    if (!is_root || walk->is_recorded) status = walk_to(plan, walk, coarsest_rung(walk->id), error);
+    return status == SCREE_OK && !is_root ? tile_hand_up_new(&walk->tile, coarse, error) : status;
+}
+
+enum scree_status tile_build_write_stream(const struct tile_plan *plan, struct tile_walk *walk,
+                                          struct tile_store *store, struct stream_tile_figures *figures,
+                                          struct scree_error *error) {
+    struct scree_memory *memory = walk->tile.memory;
+    const struct encode_options options = {.rungs_per_increment = plan->rungs_per_increment};
+    unsigned char *bytes = NULL;
+    size_t size_bytes = 0;
+    enum scree_status status = SCREE_E_MEMORY;
+    struct scree_stream_header *header = scree_allocate(memory, 1, sizeof *header, "a stream's header", error);
+    if (header == NULL) goto cleanup;
+    if ((status = recorder_finish(&walk->recorder, error)) != SCREE_OK) goto cleanup;
+    stream_place(plan->lattice, plan->ladder, walk->id, header);
+    status = stream_encode_new(memory, header, &walk->recorder.recording, &options, &bytes, &size_bytes, error);
+    if (status != SCREE_OK) goto cleanup;
+    if ((status = stream_header_read(bytes, size_bytes, header, error)) != SCREE_OK) goto cleanup;
+    if ((status = tile_store_write(store, walk->id, bytes, size_bytes, false, NULL, error)) != SCREE_OK) goto cleanup;
+    *figures = stream_tile_figures_of(header, size_bytes);
+cleanup:
+    scree_release(memory, bytes);
+    scree_release(memory, header);
     return status;
+}
+
+void tile_walk_release(struct tile_walk *walk) {
+    if (walk->is_recorded) recorder_release(&walk->recorder);
+    tile_release(&walk->tile);
+    walk->is_recorded = false;
 }

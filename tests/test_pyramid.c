@@ -103,7 +103,7 @@ static void remove_product(const struct product *product) {
 /* nftw hands no context on: what a walk is about, and what it counts. */
 static struct {
     const char *from, *to;
-    int files, differing, tiles, broken_tiles, others;
+    int files, differing, tiles, broken_tiles, streams, others;
 } walk_state;
 
 static bool same_files(const char *path, const char *other_path) {
@@ -152,6 +152,10 @@ static int judge_entry(const char *path, const struct stat *status, int kind, st
     const char *dot = strrchr(path, '.');
     (void)status, (void)walk;
     if (kind != FTW_F) return 0;
+    if (dot != NULL && strcmp(dot, ".scree") == 0) { /* tests/test_rungs.c looks into them */
+        walk_state.streams++;
+        return 0;
+    }
     if (dot == NULL || strcmp(dot, ".terrain") != 0) {
         walk_state.others++;
         return 0;
@@ -216,11 +220,12 @@ static enum scree_status build_in(const char *out, enum profile profile, double 
                                   const struct pyramid_options *watch, struct scree_error *error) {
     const struct pyramid_options nobody = {0};
     struct build build = {0};
-    const struct build_options options = {.raster = {.inputs = inputs, .input_count = 1, .profile = profile},
-                                          .out = out,
-                                          .max_zoom = ZOOM_FROM_SOURCE,
-                                          .ladder = {.root_error_m = root_error_m},
-                                          .threads = threads};
+    const struct build_options options = {
+        .raster = {.inputs = inputs, .input_count = 1, .profile = profile},
+        .out = out,
+        .max_zoom = ZOOM_FROM_SOURCE,
+        .ladder = {.root_error_m = root_error_m, .finest_octaves = DEFAULT_FINEST_OCTAVES},
+        .threads = threads};
     enum scree_status status = build_prepare(&options, &build, error);
     if (status == SCREE_OK) status = build_run(&options, watch != NULL ? watch : &nobody, &build, error);
     for (int zoom = 0; zoom <= build.max_zoom && status == SCREE_OK; zoom++) {
@@ -342,8 +347,11 @@ static void a_stopped_build_leaves_whole_tiles_only(void) {
         CU_ASSERT_NOT_EQUAL(access(manifest, F_OK), 0);
         judge_files(&product);
         CU_ASSERT(walk_state.tiles >= 3 && walk_state.tiles < 10);
+        CU_ASSERT(walk_state.streams >= 3 && walk_state.streams < 10);
         CU_ASSERT_EQUAL(walk_state.broken_tiles, 0);
         CU_ASSERT_EQUAL(walk_state.others, 0); /* neither temporary files nor a lock */
+        snprintf(manifest, sizeof manifest, "%s/stream/scree.json", product.folder);
+        CU_ASSERT_NOT_EQUAL(access(manifest, F_OK), 0);
         CU_ASSERT_EQUAL(build_in(product.folder, PROFILE_LOCAL, 40, 2, NULL, NULL), SCREE_OK);
         CU_ASSERT_TRUE(same_products(&fresh, &product));
         remove_product(&product);

@@ -439,20 +439,21 @@ static double level_m(double x, double y) {
 /* Takes up a tile of zoom `id.zoom`, made of level posts of the finest zoom. */
 static struct coarse_tile *climb(const struct tile_plan *plan, struct tile_id id, struct raster_reader *reader,
                                  struct scree_memory *memory) {
-    static struct tile tile; /* one at a time: children are done before their parent begins */
+    static struct tile_walk walk; /* one at a time: children are done before their parent begins */
     struct coarse_tile *children[4], *coarse;
     if (id.zoom == plan->lattice->finest_zoom) {
-        CU_ASSERT_EQUAL_FATAL(tile_build_finest(plan, id, reader, memory, &tile, NULL), SCREE_OK);
+        CU_ASSERT_EQUAL_FATAL(tile_build_finest(plan, id, reader, false, memory, &walk, NULL), SCREE_OK);
     } else {
         for (int i = 0; i < 4; i++) {
             struct tile_id child = {id.zoom + 1, 2 * id.x + (uint32_t)i % 2, 2 * id.y + (uint32_t)i / 2};
             children[i] = climb(plan, child, reader, memory);
         }
         const struct coarse_tile *const views[4] = {children[0], children[1], children[2], children[3]};
-        CU_ASSERT_EQUAL_FATAL(tile_build_parent(plan, id, views, memory, &tile, NULL), SCREE_OK);
+        CU_ASSERT_EQUAL_FATAL(tile_build_parent(plan, id, views, false, memory, &walk, NULL), SCREE_OK);
         free_children(memory, children);
     }
-    CU_ASSERT_EQUAL_FATAL(tile_build_hand_up(plan, id, &tile, &coarse, NULL), SCREE_OK);
+    CU_ASSERT_EQUAL_FATAL(tile_build_hand_up(plan, &walk, &coarse, NULL), SCREE_OK);
+    tile_walk_release(&walk);
     return coarse;
 }
 
@@ -471,7 +472,7 @@ static void level_tiles_meet_tiles_of_level_posts(void) {
                                      .pixel_y = 10,
                                      .srs = "EPSG:4326",
                                      .height = level_m};
-    static struct tile tile;
+    static struct tile_walk walk;
     struct scree_memory memory = {0};
     struct opened opened;
     make_raster(&fixture);
@@ -485,9 +486,10 @@ static void level_tiles_meet_tiles_of_level_posts(void) {
             for (int zoom = FINEST; zoom >= FINEST - 1; zoom--) {
                 struct tile_id id = {zoom, 9u >> (FINEST - zoom), rows[row] >> (FINEST - zoom)};
                 struct coarse_tile *level, *risen = climb(&plan, id, opened.reader, &memory);
-                CU_ASSERT_EQUAL_FATAL(tile_build_level(&plan, id, &memory, &tile, NULL), SCREE_OK);
-                check(&tile);
-                CU_ASSERT_EQUAL_FATAL(tile_build_hand_up(&plan, id, &tile, &level, NULL), SCREE_OK);
+                CU_ASSERT_EQUAL_FATAL(tile_build_level(&plan, id, false, &memory, &walk, NULL), SCREE_OK);
+                check(&walk.tile);
+                CU_ASSERT_EQUAL_FATAL(tile_build_hand_up(&plan, &walk, &level, NULL), SCREE_OK);
+                tile_walk_release(&walk);
                 for (int side = 0; side < SIDE_COUNT; side++) {
                     const struct border_line *line = &level->lines[side], *other = &risen->lines[side];
                     CU_ASSERT_EQUAL_FATAL(line->vertex_count, other->vertex_count);
