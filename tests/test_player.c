@@ -1,5 +1,6 @@
 /* The player as a viewer has it: streams in pieces, seeks of all kinds, damaged and cut streams, memory. */
 #include "stream/player.h"
+#include "tests/fractal.h"
 #include "tests/mesh_maker.h"
 #include "tests/progressive_maker.h"
 #include "tests/stream_maker.h"
@@ -221,6 +222,65 @@ static void levels_lie_between_rungs(void) {
     release(&stream);
 }
 
+/* Where the border's vertices are drawn, morphing. */
+static uint32_t drawn_border(struct scree_player *player, enum scree_side side, float drawn[][3], uint32_t capacity) {
+    struct scree_border border;
+    struct scree_arrays arrays;
+    scree_player_border(player, side, &border);
+    scree_player_look(player, &arrays);
+    CU_ASSERT_TRUE_FATAL(border.vertex_count <= capacity);
+    for (uint32_t i = 0; i < border.vertex_count; i++) {
+        uint32_t vertex = border.vertices[i];
+        float weight = (float)scree_morph_weight(arrays.level, arrays.increments[vertex]);
+        for (uint32_t k = 0; k < 3; k++) {
+            float from = arrays.origins[3 * vertex + k], to = arrays.positions[3 * vertex + k];
+            drawn[i][k] = from + weight * (to - from);
+        }
+    }
+    return border.vertex_count;
+}
+
+static void neighbours_meet_while_they_morph(void) {
+    enum { SIZE = 64, STRIDE = 2 * SIZE + 3, RUNGS = 14 };
+    static float heights_m[(SIZE + 3) * STRIDE];
+    const struct fractal mountains = {.seed = 5};
+    fractal_window(&mountains, -1, -1, STRIDE, SIZE + 3, heights_m, STRIDE);
+    struct stream streams[2] = {0};
+    struct scree_player *players[2];
+    for (int i = 0; i < 2; i++) {
+        const struct stream_wish wish = {.heights_m = &heights_m[STRIDE + 1 + i * SIZE],
+                                         .stride = STRIDE,
+                                         .columns = SIZE,
+                                         .rows = SIZE,
+                                         .height_exponent = -2,
+                                         .profile = SCREE_LOCAL,
+                                         .finest_m = 3,
+                                         .rungs = RUNGS};
+        CU_ASSERT_EQUAL_FATAL(
+            stream_make(&streams[i].memory, &wish, NULL, &streams[i].bytes, &streams[i].size_bytes, NULL), SCREE_OK);
+        players[i] = full_player(&streams[i]);
+    }
+    uint32_t moving = 0;
+    for (int step = 0; step <= 4 * (RUNGS - 1); step++) {
+        float eastern[SIZE + 1][3], western[SIZE + 1][3];
+        scree_player_seek_level(players[0], step / 4.0);
+        scree_player_seek_level(players[1], step / 4.0);
+        uint32_t count = drawn_border(players[0], SCREE_EAST, eastern, SIZE + 1);
+        CU_ASSERT_EQUAL_FATAL(drawn_border(players[1], SCREE_WEST, western, SIZE + 1), count);
+        for (uint32_t i = 0; i < count; i++) {
+            CU_ASSERT_EQUAL(eastern[i][0], -western[i][0]); /* the middles are one tile apart */
+            CU_ASSERT_EQUAL(eastern[i][1], western[i][1]);
+            CU_ASSERT_EQUAL(eastern[i][2], western[i][2]);
+            moving += eastern[i][2] * 4 != floorf(eastern[i][2] * 4); /* between height steps */
+        }
+    }
+    CU_ASSERT_TRUE(moving > 10);
+    for (int i = 0; i < 2; i++) {
+        scree_player_free(players[i]);
+        release(&streams[i]);
+    }
+}
+
 static void seeks_find_the_coarsest_that_will_do(void) {
     struct stream stream;
     make(&stream, SCREE_LOCAL);
@@ -407,6 +467,7 @@ int suite_player(void) {
     CU_ADD_TEST(suite, the_way_back_ends_in_the_same_coarse_mesh);
     CU_ADD_TEST(suite, every_split_is_a_mesh);
     CU_ADD_TEST(suite, levels_lie_between_rungs);
+    CU_ADD_TEST(suite, neighbours_meet_while_they_morph);
     CU_ADD_TEST(suite, seeks_find_the_coarsest_that_will_do);
     CU_ADD_TEST(suite, more_than_has_arrived_is_wanted);
     CU_ADD_TEST(suite, damage_is_told_and_survived);
