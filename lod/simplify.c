@@ -250,7 +250,8 @@ void simplify_interior(struct simplifier *simplifier, float tolerance_m) {
     struct queue *queue = &simplifier->queue;
     simplifier->tolerance_m = tolerance_m;
     queue_reset(queue, LEAST_CLASS * tolerance_m * tolerance_m);
-    for (int32_t v = 0; v < simplifier->mesh->vertex_count; v++) {
+    for (int32_t i = 0; i < simplifier->mesh->vertex_count; i++) {
+        int32_t v = simplifier->order[i];
         unsigned char *state = &simplifier->state[v];
         if (*state == STATE_REFUSED && simplifier->refused_m[v] > tolerance_m) continue;
         if (*state == STATE_FIXED) continue;
@@ -272,6 +273,26 @@ bool simplifier_may_collapse(const struct simplifier *simplifier, int32_t vertex
     return simplifier->state[vertex] != STATE_FIXED;
 }
 
+#define ORDER_CLASSES 64
+
+/* Which sublattice a vertex is part of, the finest first: its coordinates' common factor of two, then those of whose
+ * two coordinates one is odd, then those where both are. On a grid no two of a class are neighbours. */
+static int32_t order_class(const struct sample *at) {
+    uint32_t both = (uint32_t)at->x | (uint32_t)at->y;
+    int32_t level = both == 0 ? 31 : __builtin_ctz(both);
+    return 2 * level + (both != 0 && ((at->x & at->y) >> level & 1) != 0);
+}
+
+/* Where nothing tells vertices apart, as on water, they go by sublattices: what is left is as regular as a grid, and a
+ * vertex waits for few others when it comes back. */
+static void order_vertices(struct simplifier *simplifier) {
+    const struct mesh *mesh = simplifier->mesh;
+    int32_t start[ORDER_CLASSES + 1] = {0};
+    for (int32_t v = 0; v < mesh->vertex_count; v++) start[order_class(&mesh->vertices[v].at) + 1]++;
+    for (int class = 0; class < ORDER_CLASSES; class ++) start[class + 1] += start[class];
+    for (int32_t v = 0; v < mesh->vertex_count; v++) simplifier->order[start[order_class(&mesh->vertices[v].at)]++] = v;
+}
+
 enum scree_status simplifier_start(struct scree_memory *memory, struct mesh *mesh, const struct samples *samples,
                                    const struct simplify_options *options, struct simplifier *simplifier,
                                    struct scree_error *error) {
@@ -282,13 +303,16 @@ enum scree_status simplifier_start(struct scree_memory *memory, struct mesh *mes
     simplifier->samples = *samples;
     simplifier->options = *options;
     simplifier->state = scree_allocate(memory, count, sizeof *simplifier->state, "vertex states", error);
+    simplifier->order = scree_allocate(memory, count, sizeof *simplifier->order, "vertex order", error);
     simplifier->target = scree_allocate(memory, count, sizeof *simplifier->target, "vertex targets", error);
     simplifier->refused_m = scree_allocate(memory, count, sizeof *simplifier->refused_m, "vertex bounds", error);
-    if (simplifier->state == NULL || simplifier->target == NULL || simplifier->refused_m == NULL ||
+    if (simplifier->state == NULL || simplifier->order == NULL || simplifier->target == NULL ||
+        simplifier->refused_m == NULL ||
         queue_allocate(memory, mesh->vertex_count, &simplifier->queue, error) != SCREE_OK) {
         simplifier_release(simplifier);
         return SCREE_E_MEMORY;
     }
+    order_vertices(simplifier);
     for (int32_t v = 0; v < mesh->vertex_count; v++) {
         const struct mesh_vertex *vertex = &mesh->vertices[v];
         if (vertex->edge == MESH_NONE || mesh_twin(mesh, vertex->edge) == MESH_NONE) continue;
@@ -303,6 +327,7 @@ void simplifier_release(struct simplifier *simplifier) {
     queue_release(simplifier->memory, &simplifier->queue);
     scree_release(simplifier->memory, simplifier->refused_m);
     scree_release(simplifier->memory, simplifier->target);
+    scree_release(simplifier->memory, simplifier->order);
     scree_release(simplifier->memory, simplifier->state);
     memset(simplifier, 0, sizeof *simplifier);
 }

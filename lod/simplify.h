@@ -41,6 +41,7 @@ struct simplifier {
     struct queue queue;
     float tolerance_m;
     unsigned char *state; /* one a vertex, see simplify.c */
+    int32_t *order;       /* of vertices: in which they are looked at first */
     int32_t *target;      /* the neighbour that a vertex would go to */
     float *refused_m;     /* the tolerance below which it cannot go */
 };
