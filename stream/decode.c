@@ -101,28 +101,33 @@ static void take_base(struct stream_decoder *decoder) {
         memcpy(decoded->corners + 3 * (size_t)t, surface->triangles[t].vertex, sizeof surface->triangles[t].vertex);
 }
 
+static enum scree_status decode_layers(struct stream_decoder *decoder, uint32_t layers, struct scree_error *error) {
+    uint32_t most = decoder->header->rungs[decoder->blocks].vertex_count;
+    enum scree_status status = SCREE_OK;
+    for (uint32_t layer = 0; layer < layers && status == SCREE_OK; layer++) {
+        uint32_t before = decoder->surface.vertex_count;
+        status = increment_code(&decoder->increment, most - before, error);
+        if (status == SCREE_OK && decoder->surface.vertex_count == before && most > before)
+            status = scree_fail(error, SCREE_E_CORRUPT, "a layer of a block is empty");
+    }
+    return status;
+}
+
 static enum scree_status decode_base(struct stream_decoder *decoder, struct scree_error *error) {
     struct base_start start = {0};
-    uint32_t most = decoder->header->rungs[0].vertex_count;
     enum scree_status status = SCREE_OK;
     base_start_code(&decoder->coder, &start);
     surface_rectangle(&decoder->surface, decoder->header->columns, decoder->header->rows, start.rising);
     for (int i = 0; i < 4; i++) decoder->surface.vertices[i].height = start.heights[i];
     decoder->increment.height_step = 1 << start.step_bits;
-    for (uint32_t layer = 0; layer < start.layers && status == SCREE_OK; layer++) {
-        uint32_t before = decoder->surface.vertex_count;
-        status = increment_code(&decoder->increment, most - before, error);
-        if (status == SCREE_OK && decoder->surface.vertex_count == before)
-            status = scree_fail(error, SCREE_E_CORRUPT, "a layer of the base mesh is empty");
-    }
+    if (start.layers > 0) status = decode_layers(decoder, start.layers, error);
     increment_forget(&decoder->increment);
     return status;
 }
 
 static enum scree_status decode_increment(struct stream_decoder *decoder, struct scree_error *error) {
-    uint32_t most = decoder->header->rungs[decoder->blocks].vertex_count - decoder->surface.vertex_count;
     decoder->increment.splits = &decoder->decoded;
-    return increment_code(&decoder->increment, most, error);
+    return decode_layers(decoder, layer_count_code(&decoder->coder, 1), error);
 }
 
 enum scree_status stream_decode_block(struct stream_decoder *decoder, const void *bytes, size_t size_bytes,

@@ -189,6 +189,26 @@ static enum scree_status code_base(struct encoder *encoder, struct scree_error *
     return status;
 }
 
+/* An increment in its layers, the coarsest first. */
+static enum scree_status code_increment(struct encoder *encoder, uint32_t first, uint32_t end,
+                                        struct scree_error *error) {
+    uint32_t there = encoder->surface.vertex_count, layers = 0, left = end - first;
+    enum scree_status status = SCREE_OK;
+    for (; left > 0 || layers == 0; layers++) {
+        uint32_t most = layer_bound(there + (end - first - left));
+        left -= left < most ? left : most;
+    }
+    if (layers > LAYERS_MOST) return scree_fail(error, SCREE_E_LIMIT, "an increment has too many layers");
+    layer_count_code(&encoder->coder, layers);
+    for (uint32_t layer = 0; layer < layers && status == SCREE_OK; layer++) {
+        uint32_t most = layer_bound(encoder->surface.vertex_count);
+        uint32_t coarsest = end - first < most ? first : end - most;
+        status = code_layer(encoder, coarsest, end, error);
+        end = coarsest;
+    }
+    return status;
+}
+
 static enum scree_status code_blocks(struct encoder *encoder, uint32_t rungs_a_block, struct scree_error *error) {
     const struct recording *recording = encoder->recording;
     uint32_t rung = recording->rung_count - 1;
@@ -200,7 +220,7 @@ static enum scree_status code_blocks(struct encoder *encoder, uint32_t rungs_a_b
         uint32_t end = recording->rungs[rung].removals;
         rung -= rungs_a_block < rung ? rungs_a_block : rung;
         begin_block(encoder);
-        status = code_layer(encoder, recording->rungs[rung].removals, end, error);
+        status = code_increment(encoder, recording->rungs[rung].removals, end, error);
         if (status == SCREE_OK) status = end_block(encoder, &recording->rungs[rung], error);
     }
     return status;

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #define POST_CLASSES  12
-#define ANGLE_CLASSES 14
+#define ANGLE_CLASSES 10
 #define MOST_ROUNDS   1024
 #define HEIGHT_BITS   31
 #define HEIGHT_MEMORY 4 /* residuals of earlier increments count as so many */
@@ -49,31 +49,34 @@ static int post_class(uint16_t posts) {
     return class;
 }
 
-static void add_pending(struct increment *increment, uint32_t triangle, int32_t x, int32_t y) {
-    uint32_t *first = &increment->surface->triangles[triangle].first;
-    increment->pending[increment->pending_count] = (struct pending){x, y, triangle, *first};
-    *first = increment->pending_count++;
-}
-
-/* Places of a triangle ascend, so none is there twice. */
-static bool is_after(const struct pending *last, int32_t x, int32_t y) {
-    return y > last->y || (y == last->y && x > last->x);
+/* How many vertices lie in the triangle. */
+static uint32_t code_count(struct increment *increment, const struct surface_triangle *at, uint32_t count) {
+    int class = post_class(at->posts);
+    uint32_t coded = 0;
+    while (coded < at->posts &&
+           code_bit(increment->coder, &increment->models->more[coded < 2 ? coded : 2][class], coded < count))
+        coded++;
+    return coded;
 }
 
 static bool code_places(struct increment *increment, uint32_t triangle, uint32_t most) {
-    const struct surface_triangle *at = &increment->surface->triangles[triangle];
+    struct surface_triangle *at = &increment->surface->triangles[triangle];
+    struct pending *coded = &increment->pending[increment->pending_count];
     const struct pending *places = NULL;
     uint32_t count = increment->plan != NULL ? increment->plan->places(increment->plan->context, triangle, &places) : 0;
-    int class = post_class(at->posts);
-    for (uint32_t i = 0; i < at->posts; i++) {
-        struct bit_model *model = &increment->models->more[i < 2 ? i : 2][class];
-        if (!code_bit(increment->coder, model, i < count)) break;
-        int32_t x = i < count ? places[i].x : 0, y = i < count ? places[i].y : 0;
-        if (increment->pending_count == most) return false;
-        if (!posts_code(increment->coder, &increment->models->posts, increment->surface, triangle, &x, &y))
-            return false;
-        if (i > 0 && !is_after(&increment->pending[increment->pending_count - 1], x, y)) return false;
-        add_pending(increment, triangle, x, y);
+    count = code_count(increment, at, count);
+    if (count > most - increment->pending_count) return false;
+    if (count == 0) return true;
+    if (places != NULL)
+        memcpy(coded, places, count * sizeof *coded);
+    else
+        memset(coded, 0, count * sizeof *coded);
+    if (!posts_code(increment->coder, &increment->models->posts, increment->surface, triangle, count, coded))
+        return false;
+    for (uint32_t i = 0; i < count; i++) {
+        coded[i].triangle = triangle;
+        coded[i].next = at->first;
+        at->first = increment->pending_count++;
     }
     return true;
 }
@@ -102,7 +105,7 @@ static void keep_common(struct common *common, uint32_t a, uint32_t b) {
  * w is the one that Delaunay would draw. */
 static int angle_class(const struct scree_vertex *v, const struct scree_vertex *w, const struct scree_vertex *x,
                        const struct scree_vertex *y) {
-    static const double limits[ANGLE_CLASSES - 1] = {-12, -6, -3.5, -2, -1.2, -0.7, -0.3, 0, 0.3, 0.7, 1.3, 2.2, 4};
+    static const double limits[ANGLE_CLASSES - 1] = {-6, -2.5, -1.2, -0.6, -0.2, 0.3, 0.8, 1.5, 3};
     double vx_x = (double)x->x - v->x, vx_y = (double)x->y - v->y, vy_x = (double)y->x - v->x,
            vy_y = (double)y->y - v->y;
     double wx_x = (double)x->x - w->x, wx_y = (double)x->y - w->y, wy_x = (double)y->x - w->x,
@@ -377,7 +380,16 @@ static enum scree_status code_insertion(struct increment *increment, uint32_t p,
     return status;
 }
 
-/* Rounds over those that wait, until none does. */
+static void reverse(uint32_t *list, uint32_t count) {
+    for (uint32_t i = 0; i < count / 2; i++) {
+        uint32_t first = list[i];
+        list[i] = list[count - 1 - i];
+        list[count - 1 - i] = first;
+    }
+}
+
+/* Rounds over those that wait, until none does; back and forth, so that a row of vertices that wait for one another
+ * comes in one round or two. */
 static enum scree_status code_insertions(struct increment *increment, struct scree_error *error) {
     uint32_t waiting = increment->pending_count;
     for (uint32_t p = 0; p < waiting; p++) increment->waiting[p] = p;
@@ -396,6 +408,7 @@ static enum scree_status code_insertions(struct increment *increment, struct scr
         if (left == waiting || round == MOST_ROUNDS)
             return scree_fail(error, SCREE_E_CORRUPT, "vertices of an increment wait for each other");
         waiting = left;
+        if (round > 0) reverse(increment->waiting, waiting);
     }
     return SCREE_OK;
 }

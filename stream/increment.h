@@ -16,13 +16,6 @@
 
 struct increment_models;
 
-/* A vertex on its way in. */
-struct pending {
-    int32_t x, y;
-    uint32_t triangle; /* that it lies in now */
-    uint32_t next;     /* in the same triangle */
-};
-
 /* What an encoder knows; all calls get its context. */
 struct increment_plan {
     void *context;
@@ -56,11 +49,12 @@ struct increment {
 
 /* No bytes may cost a reader more time or memory than their number of vertices is worth. Over a whole stream, at most
  * STEPS_FREE + STEPS_PER_VERTEX x vertices edges and vertices are looked at, and at most OPENINGS_FREE +
- * OPENINGS_PER_VERTEX x vertices triangles make way: real ones take up to 100 steps and 3 openings a vertex. */
+ * OPENINGS_PER_VERTEX x vertices triangles make way: real ones take up to 100 steps and 3 to 7 openings a
+ * vertex, and the simplifier makes no star of more than 48 triangles. */
 #define INCREMENT_STEPS_FREE          (1 << 20)
 #define INCREMENT_STEPS_PER_VERTEX    1024
 #define INCREMENT_OPENINGS_FREE       4096
-#define INCREMENT_OPENINGS_PER_VERTEX 8
+#define INCREMENT_OPENINGS_PER_VERTEX 48
 
 /* Models and scratch for layers of up to `most` vertices. */
 enum scree_status increment_start(struct scree_memory *memory, uint32_t most, struct surface *surface,

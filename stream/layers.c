@@ -2,6 +2,16 @@
 
 #define STEP_BITS_MOST 31
 
+#define LAYER_LEAST 256
+
+uint32_t layer_bound(uint32_t vertices_there) {
+    return vertices_there > LAYER_LEAST ? vertices_there : LAYER_LEAST;
+}
+
+uint32_t layer_count_code(struct range_coder *coder, uint32_t layers) {
+    return code_uniform(coder, LAYERS_MOST, layers - 1) + 1;
+}
+
 void base_start_code(struct range_coder *coder, struct base_start *start) {
     start->step_bits = code_uniform(coder, STEP_BITS_MOST, start->step_bits);
     start->layers = code_uniform(coder, LAYERS_MOST, start->layers);

@@ -12,6 +12,11 @@ struct edges {
     bool owned[3];
 };
 
+/* Whether the posts on an edge belong to the triangle that it is an edge of. */
+static inline bool is_owned(const struct scree_vertex *from, const struct scree_vertex *to, uint32_t twin) {
+    return to->y > from->y || (to->y == from->y && to->x > from->x) || twin == SURFACE_NONE;
+}
+
 static void edges_of(const struct surface *surface, uint32_t t, struct edges *edges) {
     const struct surface_triangle *triangle = &surface->triangles[t];
     for (int i = 0; i < 3; i++) {
@@ -21,8 +26,7 @@ static void edges_of(const struct surface *surface, uint32_t t, struct edges *ed
         edges->y[i] = a->y;
         edges->dx[i] = (int64_t)b->x - a->x;
         edges->dy[i] = (int64_t)b->y - a->y;
-        edges->owned[i] =
-            edges->dy[i] > 0 || (edges->dy[i] == 0 && edges->dx[i] > 0) || triangle->twin[i] == SURFACE_NONE;
+        edges->owned[i] = is_owned(a, b, triangle->twin[i]);
     }
 }
 
@@ -30,45 +34,48 @@ static inline int64_t left_of(const struct edges *edges, int i, int64_t x, int64
     return edges->dx[i] * (y - edges->y[i]) - edges->dy[i] * (x - edges->x[i]);
 }
 
-static inline bool belongs(const struct edges *edges, int64_t x, int64_t y) {
+bool posts_belong(const struct surface *surface, uint32_t triangle, int32_t x, int32_t y) {
+    const struct surface_triangle *at = &surface->triangles[triangle];
+    const struct scree_vertex post = {x, y, 0}, *from = &surface->vertices[at->vertex[2]];
     int zeros = 0;
-    for (int i = 0; i < 3; i++) {
-        int64_t left = left_of(edges, i, x, y);
-        if (left < 0 || (left == 0 && !edges->owned[i])) return false;
+    for (int i = 2, next = 0; next < 3; i = next++) {
+        const struct scree_vertex *to = &surface->vertices[at->vertex[next]];
+        int64_t left = surface_area2(from, to, &post);
+        if (left < 0 || (left == 0 && !is_owned(from, to, at->twin[i]))) return false;
         zeros += left == 0;
+        from = to;
     }
     return zeros < 2; /* two: a corner */
 }
 
-bool posts_belong(const struct surface *surface, uint32_t triangle, int32_t x, int32_t y) {
-    struct edges edges;
-    edges_of(surface, triangle, &edges);
-    return belongs(&edges, x, y);
-}
-
+/* Stein's algorithm. */
 static uint32_t common_divisor(int64_t dx, int64_t dy) {
     uint32_t a = (uint32_t)(dx < 0 ? -dx : dx), b = (uint32_t)(dy < 0 ? -dy : dy);
-    if (a == 1 || b == 1) return 1;
-    while (b != 0) {
-        uint32_t rest = a % b;
-        a = b;
-        b = rest;
+    if (a == 0 || b == 0) return a + b;
+    int twos = __builtin_ctz(a | b);
+    for (a >>= __builtin_ctz(a); b != 0;) {
+        b >>= __builtin_ctz(b);
+        uint32_t least = a < b ? a : b;
+        b = a < b ? b - a : a - b;
+        a = least;
     }
-    return a;
+    return a << twos;
 }
 
 /* Pick's theorem: twice the area is 2 * inside + on the edges - 2. */
 uint16_t posts_count(const struct surface *surface, uint32_t triangle) {
-    struct edges edges;
-    edges_of(surface, triangle, &edges);
-    int64_t area2 = edges.dx[0] * edges.dy[1] - edges.dx[1] * edges.dy[0], around = 0, owned = 0;
+    const struct surface_triangle *at = &surface->triangles[triangle];
+    const struct scree_vertex *a = &surface->vertices[at->vertex[0]], *b = &surface->vertices[at->vertex[1]];
+    const struct scree_vertex *c = &surface->vertices[at->vertex[2]];
+    int64_t area2 = surface_area2(a, b, c);
     if (area2 == 1) return 0;
-    for (int i = 0; i < 3; i++) {
-        int64_t steps = common_divisor(edges.dx[i], edges.dy[i]);
-        around += steps;
-        if (edges.owned[i]) owned += steps - 1;
-    }
-    int64_t count = (area2 - around + 2) / 2 + owned;
+    int64_t ab = common_divisor((int64_t)b->x - a->x, (int64_t)b->y - a->y);
+    int64_t bc = common_divisor((int64_t)c->x - b->x, (int64_t)c->y - b->y);
+    int64_t ca = common_divisor((int64_t)a->x - c->x, (int64_t)a->y - c->y);
+    int64_t count = (area2 - (ab + bc + ca) + 2) / 2;
+    if (is_owned(a, b, at->twin[0])) count += ab - 1;
+    if (is_owned(b, c, at->twin[1])) count += bc - 1;
+    if (is_owned(c, a, at->twin[2])) count += ca - 1;
     return count < MOST_POSTS ? (uint16_t)count : MOST_POSTS;
 }
 
@@ -94,43 +101,72 @@ static bool is_corner(const struct edges *edges, int64_t x, int64_t y) {
            (x == edges->x[2] && y == edges->y[2]);
 }
 
-/* Walks through the posts of the box, row by row, to post number `index` of the triangle or to (x, y), whichever comes
- * first; returns the number of the post where it stopped, which is in x and y then. */
-static uint32_t walk_posts(const struct edges *edges, const struct box *box, uint32_t index, int32_t *x, int32_t *y) {
-    int32_t row_left[3], left[3], dx[3], dy[3]; /* a small box: all of it fits */
-    uint32_t passed = 0;
+/* A walk through a small box, row by row, from one post of the triangle to the next. */
+struct walk {
+    int32_t x, y; /* the present one; nothing before the first step */
+    int32_t x_first, x_last, y_last;
+    int32_t left[3], row[3], dx[3], dy[3]; /* how far left of each edge: here, and where the row begins */
+};
+
+static struct walk walk_start(const struct edges *edges, const struct box *box) {
+    struct walk walk = {.x = (int32_t)box->x_first - 1,
+                        .y = (int32_t)box->y_first,
+                        .x_first = (int32_t)box->x_first,
+                        .x_last = (int32_t)box->x_last,
+                        .y_last = (int32_t)box->y_last};
     for (int i = 0; i < 3; i++) {
-        dx[i] = (int32_t)edges->dx[i];
-        dy[i] = (int32_t)edges->dy[i];
-        row_left[i] = (int32_t)left_of(edges, i, box->x_first, box->y_first) - (edges->owned[i] ? 0 : 1);
+        walk.dx[i] = (int32_t)edges->dx[i];
+        walk.dy[i] = (int32_t)edges->dy[i];
+        walk.row[i] = (int32_t)left_of(edges, i, box->x_first, box->y_first) - (edges->owned[i] ? 0 : 1);
+        walk.left[i] = walk.row[i] + walk.dy[i];
     }
-    for (int32_t at_y = (int32_t)box->y_first; at_y <= box->y_last; at_y++) {
-        memcpy(left, row_left, sizeof left);
-        for (int32_t at_x = (int32_t)box->x_first; at_x <= box->x_last; at_x++) {
-            if ((left[0] | left[1] | left[2]) >= 0 && !is_corner(edges, at_x, at_y)) {
-                if (passed == index || (at_x == *x && at_y == *y)) {
-                    *x = at_x;
-                    *y = at_y;
-                    return passed;
-                }
-                passed++;
-            }
-            for (int i = 0; i < 3; i++) left[i] -= dy[i];
-        }
-        for (int i = 0; i < 3; i++) row_left[i] += dx[i];
-    }
-    return passed;
+    return walk;
 }
 
-static void code_small(struct range_coder *coder, const struct edges *edges, const struct box *box, uint16_t count,
-                       int32_t *x, int32_t *y) {
+static bool walk_on(struct walk *walk, const struct edges *edges) {
+    for (;;) {
+        if (walk->x < walk->x_last) {
+            walk->x++;
+            for (int i = 0; i < 3; i++) walk->left[i] -= walk->dy[i];
+        } else {
+            if (walk->y == walk->y_last) return false;
+            walk->y++;
+            walk->x = walk->x_first;
+            for (int i = 0; i < 3; i++) walk->left[i] = walk->row[i] += walk->dx[i];
+        }
+        if ((walk->left[0] | walk->left[1] | walk->left[2]) >= 0 && !is_corner(edges, walk->x, walk->y)) return true;
+    }
+}
+
+/* One of `posts` posts, all alike. */
+static void code_one(struct range_coder *coder, const struct edges *edges, const struct box *box, uint32_t posts,
+                     struct pending *place) {
+    struct walk walk = walk_start(edges, box);
     uint32_t index = 0;
-    if (coder->writing)
-        index = walk_posts(edges, box, UINT32_MAX, x, y);
-    else
-        *x = *y = INT32_MIN;
-    index = code_uniform(coder, count, index);
-    if (!coder->writing) walk_posts(edges, box, index, x, y);
+    if (coder->writing) {
+        while (walk_on(&walk, edges) && (walk.x != place->x || walk.y != place->y)) index++;
+        code_uniform(coder, posts, index);
+        return;
+    }
+    index = code_uniform(coder, posts, 0);
+    for (uint32_t i = 0; i <= index; i++) walk_on(&walk, edges);
+    place->x = walk.x;
+    place->y = walk.y;
+}
+
+/* A set of posts, all sets of that size alike: of each post, whether it is one of those that are left. */
+static void code_set(struct range_coder *coder, const struct edges *edges, const struct box *box, uint32_t posts,
+                     uint32_t count, struct pending *places) {
+    struct walk walk = walk_start(edges, box);
+    for (uint32_t chosen = 0; chosen < count && walk_on(&walk, edges); posts--) {
+        uint32_t share = count - chosen;
+        bool is_one =
+            coder->writing ? places[chosen].x == walk.x && places[chosen].y == walk.y : code_ask(coder, posts) < share;
+        code_take(coder, posts, is_one ? 0 : share, is_one ? share : posts - share);
+        if (!is_one) continue;
+        places[chosen].x = walk.x;
+        places[chosen++].y = walk.y;
+    }
 }
 
 /* ---- large ones: a row, then a post of it ---- */
@@ -173,17 +209,22 @@ static uint64_t code_place(struct range_coder *coder, struct bit_model models[8]
     return start + code_large_uniform(coder, (eighth + 1) * count / 8 - start, value - start);
 }
 
-static bool code_large(struct range_coder *coder, struct post_models *models, const struct edges *edges,
-                       const struct box *box, int32_t *x, int32_t *y) {
+static bool code_far(struct range_coder *coder, struct post_models *models, const struct edges *edges,
+                     const struct box *box, struct pending *place) {
     int64_t first, last, rows = box->y_last - box->y_first + 1;
-    int64_t row = box->y_first + (int64_t)code_place(coder, models->row, (uint64_t)rows, (uint64_t)(*y - box->y_first));
+    int64_t row =
+        box->y_first + (int64_t)code_place(coder, models->row, (uint64_t)rows, (uint64_t)(place->y - box->y_first));
     row_range(edges, row, &first, &last);
     if (first > last) return false;
     int64_t column =
-        first + (int64_t)code_place(coder, models->column, (uint64_t)(last - first + 1), (uint64_t)(*x - first));
-    *x = (int32_t)column;
-    *y = (int32_t)row;
+        first + (int64_t)code_place(coder, models->column, (uint64_t)(last - first + 1), (uint64_t)(place->x - first));
+    place->x = (int32_t)column;
+    place->y = (int32_t)row;
     return true;
+}
+
+static bool is_after(const struct pending *place, const struct pending *last) {
+    return place->y > last->y || (place->y == last->y && place->x > last->x);
 }
 
 void post_models_start(struct post_models *models) {
@@ -191,14 +232,20 @@ void post_models_start(struct post_models *models) {
 }
 
 bool posts_code(struct range_coder *coder, struct post_models *models, const struct surface *surface, uint32_t triangle,
-                int32_t *x, int32_t *y) {
+                uint32_t count, struct pending *places) {
     struct edges edges;
     edges_of(surface, triangle, &edges);
     struct box box = box_of(&edges);
     int64_t width = box.x_last - box.x_first + 1, height = box.y_last - box.y_first + 1;
     if (width <= SMALL_BOX && height <= SMALL_BOX && width * height <= SMALL_BOX) {
-        code_small(coder, &edges, &box, surface->triangles[triangle].posts, x, y);
+        if (count == 1)
+            code_one(coder, &edges, &box, surface->triangles[triangle].posts, places);
+        else
+            code_set(coder, &edges, &box, surface->triangles[triangle].posts, count, places);
         return true;
     }
-    return code_large(coder, models, &edges, &box, x, y);
+    for (uint32_t i = 0; i < count; i++)
+        if (!code_far(coder, models, &edges, &box, &places[i]) || (i > 0 && !is_after(&places[i], &places[i - 1])))
+            return false;
+    return true;
 }

@@ -8,6 +8,13 @@
 #include "stream/range_coder.h"
 #include "stream/surface.h"
 
+/* A vertex on its way in. */
+struct pending {
+    int32_t x, y;
+    uint32_t triangle; /* that it lies in now */
+    uint32_t next;     /* in the same triangle */
+};
+
 /* What is learned about where in triangles vertices come. */
 struct post_models {
     struct bit_model row[8], column[8]; /* eighths of a triangle's rows, and of a row */
@@ -20,9 +27,9 @@ bool posts_belong(const struct surface *surface, uint32_t triangle, int32_t x, i
 /* How many posts belong to it, as far as 65535. */
 uint16_t posts_count(const struct surface *surface, uint32_t triangle);
 
-/* Codes one of the triangle's posts (it has at least one); x and y are looked at only when writing. False when bytes
- * name none. */
+/* Codes the places of `count` vertices, 1 up to the triangle's posts, in ascending order of rows and columns: x and y
+ * of each, which are looked at only when writing. False when bytes name what is no such place. */
 bool posts_code(struct range_coder *coder, struct post_models *models, const struct surface *surface, uint32_t triangle,
-                int32_t *x, int32_t *y);
+                uint32_t count, struct pending *places);
 
 #endif
