@@ -5,7 +5,7 @@
 #define STEPS_IN_TOLERANCE 16 /* heights are written so much finer than the tolerance */
 #define STEEPEST_TILE      4  /* relief of a tile in widths of it that height codes always have room for */
 #define HEIGHT_CODES       32767
-#define STEPS_IN_FINEST    8      /* the same for the finest rung: each bit of heights is a bit of every vertex there */
+#define STEPS_IN_FINEST    4 /* the same for the finest rung; 8 costs 5 % more bytes of streams and saves no vertices */
 #define LARGEST_UNITS      0x1p24 /* heights are floats while tiles are simplified: all of them are exact */
 #define LOSSLESS_UNIT_M    1.0    /* so that sources in whole metres are kept to the last bit */
 
