@@ -136,10 +136,11 @@ static void finish_block(struct scree_player *player) {
                       (unsigned)rung);
         return;
     }
-    enum scree_status status = stream_decode_block(player->decoder, player->bytes, block->size_bytes, failure);
+    struct scree_error decoding = {.offset_bytes = SCREE_NO_OFFSET};
+    enum scree_status status = stream_decode_block(player->decoder, player->bytes, block->size_bytes, &decoding);
     if (status != SCREE_OK) {
-        scree_fail_at(failure, status, (int64_t)block->offset_bytes, "block %u of the stream cannot be decoded",
-                      (unsigned)rung);
+        scree_fail_at(failure, status, (int64_t)block->offset_bytes, "block %u of the stream: %s", (unsigned)rung,
+                      decoding.text);
         return;
     }
     if (!playback_extend(&player->playback, failure) || !player_border_extend(&player->border, failure) ||
