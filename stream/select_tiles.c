@@ -38,7 +38,7 @@ enum scree_status scree_select_link(const struct scree_terrain *terrain, struct 
         if (i > 0 && compare_tiles(&tiles[i - 1], tile) == 0) return fail(&tile->id, "is listed twice", error);
         if (tile->id.zoom == tiles[0].id.zoom) continue;
         struct scree_select_tile above = {.id = {tile->id.zoom - 1, tile->id.x / 2, tile->id.y / 2}};
-        while (parent < i && compare_tiles(&tiles[parent], &above) < 0) parent++;
+        while (compare_tiles(&tiles[parent], &above) < 0) parent++; /* the tile itself comes after it */
         if (compare_tiles(&tiles[parent], &above) != 0) return fail(&tile->id, "is listed without its parent", error);
         if (tiles[parent].child_count == 0) tiles[parent].first_child = i;
         tiles[parent].child_count++;

@@ -44,13 +44,15 @@ static double stretch(const double a[3], const double b[3], double scale_a, doub
 }
 
 static void set_planes(double rows[4][4], enum scree_depth depth, struct scree_view *view) {
-    view->plane_count = depth == SCREE_DEPTH_ANY ? 4 : 6;
+    view->plane_count = depth == SCREE_DEPTH_ANY ? 5 : 6;
     for (int i = 0; i < 4; i++) {
         for (int axis = 0; axis < 2; axis++) {
             view->planes[2 * axis][i] = rows[3][i] + rows[axis][i];
             view->planes[2 * axis + 1][i] = rows[3][i] - rows[axis][i];
         }
-        view->planes[4][i] = depth == SCREE_DEPTH_ZERO ? rows[2][i] : rows[3][i] + rows[2][i];
+        view->planes[4][i] = rows[3][i]; /* not behind the eye */
+        if (depth == SCREE_DEPTH_ZERO) view->planes[4][i] = rows[2][i];
+        if (depth == SCREE_DEPTH_MINUS_ONE) view->planes[4][i] += rows[2][i];
         view->planes[5][i] = rows[3][i] - rows[2][i];
     }
 }

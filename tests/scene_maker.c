@@ -129,7 +129,7 @@ void scene_matrix(const struct scene_camera *camera, double matrix[16]) {
     normalise(right);
     cross(right, away, up);
     double half = camera->orthogonal ? camera->height / 2 : tan(camera->height / 2);
-    double aspect = camera->width_px / camera->height_px;
+    double aspect = camera->width_px / camera->height_px * (1 + camera->stretch);
     double rows[4][3] = {{0}}, depth_scale, depth_offset; /* z = scale * distance along `away` + offset */
     if (camera->orthogonal) {
         depth_scale = (camera->depth == SCREE_DEPTH_ZERO ? 1 : 2) / (far_m - near_m);
@@ -155,6 +155,7 @@ void scene_matrix(const struct scene_camera *camera, double matrix[16]) {
         }
         matrix[12 + r] = offset;
     }
+    for (int i = 0; i < 4; i++) matrix[4 * i] += camera->shift * matrix[4 * i + 3];
 }
 
 bool scene_project(const struct scene_camera *camera, const double matrix[16], const double place[3],

@@ -38,9 +38,12 @@ struct scene_camera {
     bool orthogonal;
     double height; /* of the screen: an angle in radians, or metres */
     double width_px, height_px;
+    double shift;   /* of the middle of the screen to the right, in half screens */
+    double stretch; /* pixels are so much wider than high; 0: not */
     enum scree_depth depth;
 };
 
+/* The near plane is at 1 m, the far one at 10^8 m, but for perspective with SCREE_DEPTH_ZERO, which has none. */
 void scene_matrix(const struct scene_camera *camera, double matrix[16]);
 
 /* Pixels from the middle of the screen; false behind the camera. */

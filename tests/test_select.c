@@ -1,5 +1,6 @@
 /* Selection: what is drawn is exact enough, covers what is seen, keeps budgets, and comes closer to what is wanted with
  * every tile that arrives. */
+#include "stream/tile_box.h"
 #include "tests/cut_maker.h"
 #include "tests/scene_maker.h"
 
@@ -31,6 +32,8 @@ static struct scene_camera any_camera(uint64_t *state, const double place[2]) {
                                   .height = exp2(any(state, -7, 1)),
                                   .width_px = any(state, 100, 2000),
                                   .height_px = any(state, 100, 1200),
+                                  .shift = cut_number(state, 3) == 0 ? any(state, -0.7, 0.7) : 0,
+                                  .stretch = cut_number(state, 2) * any(state, -0.5, 1),
                                   .depth = (enum scree_depth)cut_number(state, 3)};
     if (camera.orthogonal) camera.height = 2 * height_m;
     scene_place(&scene, place[0], place[1], height_m, camera.eye);
@@ -138,6 +141,65 @@ static void what_is_seen_is_drawn_and_exact(void) {
     }
     CU_ASSERT(seen_places > 10000);
     CU_ASSERT(refined > 1000); /* and not more exact than that */
+}
+
+/* Places of tiles of all sizes lie in their boxes, and come close to each of the six sides. */
+static void boxes_hold_their_tiles(void) {
+    uint64_t state = 17;
+    scene_make(&scene, SCREE_GEODETIC, 0, 0, 0, 0, 0);
+    for (int n = 0; n < 300; n++) {
+        struct scree_tile_id id = {.zoom = n % 15};
+        id.x = (uint32_t)cut_number(&state, 2 << id.zoom);
+        id.y = (uint32_t)cut_number(&state, 1 << id.zoom);
+        double low_m = any(&state, -9000, 3000), high_m = any(&state, low_m, 9000), closest[2][3] = {{0}};
+        struct tile_box box = tile_box_of(&scene.terrain, &id, low_m, high_m);
+        for (int i = 0; i < 3 * 3 * 3 + 100; i++) { /* corners and middles, then any places */
+            double share[3], place[3];
+            for (int k = 0; k < 3; k++) share[k] = i < 27 ? (i / (int[]){1, 3, 9}[k]) % 3 / 2.0 : any(&state, 0, 1);
+            scene_place(&scene, ldexp(id.x + share[0], -id.zoom), ldexp(id.y + share[1], -id.zoom),
+                        low_m + share[2] * (high_m - low_m), place);
+            struct vector3 from = vector3_minus((struct vector3){place[0], place[1], place[2]}, box.centre);
+            for (int k = 0; k < 3; k++) {
+                double along = vector3_dot(from, box.axes[k]) / box.half_m[k];
+                CU_ASSERT(fabs(along) <= 1);
+                closest[0][k] = fmin(closest[0][k], along);
+                closest[1][k] = fmax(closest[1][k], along);
+            }
+        }
+        for (int k = 0; k < 3; k++) CU_ASSERT(closest[0][k] < -0.999 && closest[1][k] > 0.999);
+    }
+}
+
+/* What the globe hides and what lies beyond the planes of the view is not drawn. */
+static void what_cannot_be_seen_is_left_out(void) {
+    struct scene_camera camera = {.height = 1, .width_px = 1000, .height_px = 1000};
+    struct scree_select_options options = {.tolerance_px = 1e-3};
+    double matrix[16];
+    struct scree_view view;
+    scene_make(&scene, SCREE_GEODETIC, 4, 4, 0.3, 0.4, 9000);
+    link_scene(&scene);
+    scene_place(&scene, 0.3, 0.6, 2e7, camera.eye);
+    view = view_of(&camera, matrix); /* to the middle of the Earth */
+    choose(&scene, &view, &options);
+    CU_ASSERT_NOT_EQUAL(scene_drawn_at(&scene, 0.3, 0.6), UINT32_MAX);
+    CU_ASSERT_EQUAL(scene_drawn_at(&scene, 1.3, 0.4), UINT32_MAX); /* the antipodes */
+    CU_ASSERT(scene.selection.drawn_count < 300);                  /* of 512 */
+    scene_make(&scene, SCREE_LOCAL, 2, 2, 0.3, 0.4, 100);
+    link_scene(&scene);
+    for (int orthogonal = 0; orthogonal < 2; orthogonal++)
+        for (int depth = 0; depth < 3; depth++)
+            for (int far = 0; far < 3; far++) { /* behind the far plane, between both, before the near plane */
+                camera.orthogonal = orthogonal;
+                camera.height = orthogonal ? 1e5 : 1e-3;
+                camera.depth = (enum scree_depth)depth;
+                scene_place(&scene, 0.3, 0.4, (double[]){2e8, 5e7, -1000}[far], camera.eye);
+                scene_place(&scene, 0.3, 0.4, (double[]){0, 0, -2000}[far], camera.target);
+                view = view_of(&camera, matrix);
+                choose(&scene, &view, NULL);
+                bool seen = far == 1 || (far == 0 && depth == SCREE_DEPTH_ZERO && !orthogonal) ||
+                            (depth == SCREE_DEPTH_ANY && (far == 0 || orthogonal));
+                CU_ASSERT_EQUAL(scene.selection.drawn_count > 0, seen);
+            }
 }
 
 /* From far away through a narrow angle up to orthogonal, at the same metres a pixel. */
@@ -255,6 +317,13 @@ static void budgets_hold_and_are_used(void) {
         choose(&scene, &view, &bound);
         CU_ASSERT(bound.triangle_budget == 0 || scene.selection.triangles <= bound.triangle_budget);
         CU_ASSERT(bound.byte_budget == 0 || bytes_drawn() <= bound.byte_budget);
+        double raised_px = scene.selection.tolerance_px;
+        for (uint32_t t = 0; t < scene.tile_count; t++) scene.tiles[t].rungs_ready = 0;
+        choose(&scene, &view, &bound); /* what is wanted keeps the budget just so */
+        CU_ASSERT_EQUAL(scene.selection.triangles, 0);
+        if (n % 4 < 2) CU_ASSERT_EQUAL(scene.selection.tolerance_px, raised_px);
+        for (uint32_t t = 0; t < scene.tile_count; t++) scene.tiles[t].rungs_ready = scene.tiles[t].header->rung_count;
+        choose(&scene, &view, &bound);
         CU_ASSERT(scene.selection.tolerance_px >= 1);
         if (scene.selection.tolerance_px == 1) continue;
         raised++;
@@ -471,6 +540,48 @@ static void options_that_make_no_sense_are_refused(void) {
     CU_ASSERT_EQUAL(scene.selection.drawn_count + scene.selection.wanted_count, 0);
 }
 
+/* A projection is the same whatever its matrix is multiplied by; orthogonal ones with all signs turned as well. */
+static void multiples_of_a_matrix_are_one_camera(void) {
+    uint64_t state = 41;
+    for (int n = 0; n < 60; n++) {
+        double deep[2], matrix[16];
+        any_scene(&state, deep);
+        link_scene(&scene);
+        struct scene_camera camera = any_camera(&state, deep);
+        struct scree_view view = view_of(&camera, matrix);
+        choose(&scene, &view, NULL);
+        uint32_t count = scene.selection.drawn_count;
+        memcpy(other.drawn, scene.drawn, count * sizeof *scene.drawn);
+        for (int i = 0; i < 16; i++) matrix[i] *= camera.orthogonal ? -8 : 8; /* exact */
+        CU_ASSERT_EQUAL(scree_view_of_matrix(matrix, camera.depth, camera.width_px, camera.height_px, &view, NULL),
+                        SCREE_OK);
+        choose(&scene, &view, NULL);
+        CU_ASSERT_EQUAL_FATAL(scene.selection.drawn_count, count);
+        for (uint32_t i = 0; i < count; i++) {
+            CU_ASSERT_EQUAL(scene.drawn[i].tile, other.drawn[i].tile);
+            CU_ASSERT_EQUAL(scene.drawn[i].rung, other.drawn[i].rung);
+        }
+        for (int i = 0; i < 16; i++) matrix[i] *= 1e300;
+        CU_ASSERT_EQUAL(scree_view_of_matrix(matrix, camera.depth, camera.width_px, camera.height_px, &view, NULL),
+                        SCREE_E_ARGUMENT);
+    }
+}
+
+/* The farthest corner of the screen, wherever the middle is: a right angle up and across, shifted either way. */
+static void corners_of_oblique_views(void) {
+    static const double shifts[] = {0, 0.5, -0.5};
+    for (int i = 0; i < 3; i++) {
+        struct scene_camera camera = {
+            .eye = {0, 0, 10}, .height = acos(0), .width_px = 10, .height_px = 10, .shift = shifts[i]};
+        double matrix[16], reach = 1 + fabs(shifts[i]);
+        struct scree_view view = view_of(&camera, matrix);
+        CU_ASSERT_DOUBLE_EQUAL(view.corner_cosine, 1 / sqrt(1 + 1 + reach * reach), 1e-12);
+        CU_ASSERT_DOUBLE_EQUAL(view.pixels, 5, 1e-12);
+        CU_ASSERT_DOUBLE_EQUAL(view.slope, 1, 1e-12);
+        for (int k = 0; k < 3; k++) CU_ASSERT_DOUBLE_EQUAL(view.eye[k], camera.eye[k], 1e-9);
+    }
+}
+
 /* A camera inside of the box of a tile, and looking from below it. */
 static void cameras_anywhere_get_something(void) {
     struct scree_view view;
@@ -515,6 +626,8 @@ int suite_select(void) {
     CU_pSuite suite = CU_add_suite("select", NULL, NULL);
     if (suite == NULL) return 1;
     CU_ADD_TEST(suite, what_is_seen_is_drawn_and_exact);
+    CU_ADD_TEST(suite, boxes_hold_their_tiles);
+    CU_ADD_TEST(suite, what_cannot_be_seen_is_left_out);
     CU_ADD_TEST(suite, orthogonal_views_choose_what_perspective_ones_do);
     CU_ADD_TEST(suite, scale_falls_with_tolerance_and_distance);
     CU_ADD_TEST(suite, budgets_hold_and_are_used);
@@ -524,6 +637,8 @@ int suite_select(void) {
     CU_ADD_TEST(suite, tiles_that_are_no_tree_are_refused);
     CU_ADD_TEST(suite, cameras_that_make_no_sense_are_refused);
     CU_ADD_TEST(suite, options_that_make_no_sense_are_refused);
+    CU_ADD_TEST(suite, multiples_of_a_matrix_are_one_camera);
+    CU_ADD_TEST(suite, corners_of_oblique_views);
     CU_ADD_TEST(suite, cameras_anywhere_get_something);
     CU_ADD_TEST(suite, heights_are_bounds);
     return 0;

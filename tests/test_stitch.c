@@ -52,6 +52,9 @@ static void add_stitched(const struct cut *of, uint32_t tile, struct seam_check 
     for (uint32_t v = 0; v < stitch.count.vertices; v++) {
         const struct scree_stitch_tile *from = neighbours[sources[v].neighbour].tile;
         CU_ASSERT_EQUAL(from->vertices[sources[v].vertex].height, further[v].height);
+        bool inner_x = further[v].x > 0 && further[v].x < at->header.columns;
+        bool inner_y = further[v].y > 0 && further[v].y < at->header.rows;
+        CU_ASSERT(inner_x != inner_y); /* on a side, between corners */
     }
     seam_add(check, &at->view, at->triangle_count, &stitch, at->vertex_count, at->x, at->y);
 }
@@ -268,6 +271,35 @@ static void tiles_that_do_not_belong_together_are_refused(void) {
     CU_ASSERT_EQUAL(stitch_first(&stitch, NULL), SCREE_E_ARGUMENT);
 }
 
+/* Two neighbours on a side of a third, which has no vertex where they meet. */
+static void neighbours_that_differ_where_they_meet_are_refused(void) {
+    uint64_t state = 9;
+    int refused = 0;
+    for (int n = 0; n < 100; n++) {
+        struct scree_stitch_neighbour neighbours[MOST_BESIDE];
+        cut_make_ids(&state, false, &cut);
+        cut_make_meshes(&state, &cut);
+        for (uint32_t tile = 0; tile < cut.count; tile++) {
+            uint32_t count = find_neighbours(&cut, tile, neighbours), first = 0;
+            struct scree_stitch stitch = roomy();
+            while (first + 1 < count && neighbours[first].side != neighbours[first + 1].side) first++;
+            if (first + 1 >= count || neighbours[first].side != SCREE_EAST) continue;
+            struct cut_tile *lower = NULL;
+            for (uint32_t t = 0; t < cut.count; t++)
+                if (&cut.tiles[t].view == neighbours[first].tile) lower = &cut.tiles[t];
+            CU_ASSERT_PTR_NOT_NULL_FATAL(lower);
+            lower->vertices[2].height++; /* its north-western corner */
+            CU_ASSERT_EQUAL(scree_stitch_borders(&cut.tiles[tile].view, neighbours, count, 1000, &stitch, NULL),
+                            SCREE_E_CORRUPT);
+            lower->vertices[2].height--;
+            CU_ASSERT_EQUAL(scree_stitch_borders(&cut.tiles[tile].view, neighbours, count, 1000, &stitch, NULL),
+                            SCREE_OK);
+            refused++;
+        }
+    }
+    CU_ASSERT(refused > 20);
+}
+
 static void too_little_room_is_refused(void) {
     struct scree_stitch_neighbour beside = {&cut.tiles[1].view, SCREE_EAST};
     make_pair(0, 2);
@@ -315,6 +347,7 @@ int suite_stitch(void) {
     CU_ADD_TEST(suite, neighbours_are_those_that_touch);
     CU_ADD_TEST(suite, neighbours_at_the_deepest_zoom);
     CU_ADD_TEST(suite, tiles_that_do_not_belong_together_are_refused);
+    CU_ADD_TEST(suite, neighbours_that_differ_where_they_meet_are_refused);
     CU_ADD_TEST(suite, too_little_room_is_refused);
     CU_ADD_TEST(suite, neighbours_out_of_order_are_refused);
     return 0;
