@@ -17,6 +17,19 @@ static bool move(const struct ahead *ahead, const struct ahead_rung *rung, struc
     return true;
 }
 
+static bool on_border(const struct ahead *ahead, const struct sample *at) {
+    return at->x == 0 || at->y == 0 || at->x == ahead->columns || at->y == ahead->rows;
+}
+
+/* A triangle that no rung moves: its error is that of the rung at hand, so the next one will do. */
+static bool inner_admitted(const struct ahead *ahead, const struct sample *a, const struct sample *b,
+                           const struct sample *c, float error_m) {
+    if (error_m > ahead->rungs[ahead->next].tolerance_m) return false;
+    for (int i = ahead->next; i < ahead->count; i++)
+        if (ahead->rungs[i].codes.span != 0 && !simplify_positive(&ahead->rungs[i].codes, a, b, c)) return false;
+    return true;
+}
+
 static bool same_place(const struct sample *a, const struct sample *b) {
     return a->x == b->x && a->y == b->y;
 }
@@ -25,6 +38,8 @@ bool ahead_admits(const struct simplifier *simplifier, const struct sample *a, c
                   const struct sample *c, float error_m) {
     const struct ahead *ahead = simplifier->options.ahead;
     if (ahead == NULL) return true;
+    if (!on_border(ahead, a) && !on_border(ahead, b) && !on_border(ahead, c))
+        return inner_admitted(ahead, a, b, c, error_m);
     struct sample at[3] = {*a, *b, *c};
     for (int i = ahead->next; i < ahead->count; i++) {
         const struct ahead_rung *rung = &ahead->rungs[i];
