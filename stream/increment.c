@@ -4,7 +4,7 @@
 #include <string.h>
 
 #define POST_CLASSES  12
-#define ANGLE_CLASSES 10
+#define ANGLE_CLASSES 8 /* a power of two */
 #define MOST_ROUNDS   1024
 #define HEIGHT_BITS   31
 #define HEIGHT_MEMORY 4 /* residuals of earlier increments count as so many */
@@ -105,7 +105,7 @@ static void keep_common(struct common *common, uint32_t a, uint32_t b) {
  * w is the one that Delaunay would draw. */
 static int angle_class(const struct scree_vertex *v, const struct scree_vertex *w, const struct scree_vertex *x,
                        const struct scree_vertex *y) {
-    static const double limits[ANGLE_CLASSES - 1] = {-6, -2.5, -1.2, -0.6, -0.2, 0.3, 0.8, 1.5, 3};
+    static const double limits[ANGLE_CLASSES - 1] = {-4, -1.5, -0.6, -0.1, 0.5, 1.3, 3};
     double vx_x = (double)x->x - v->x, vx_y = (double)x->y - v->y, vy_x = (double)y->x - v->x,
            vy_y = (double)y->y - v->y;
     double wx_x = (double)x->x - w->x, wx_y = (double)x->y - w->y, wy_x = (double)y->x - w->x,
@@ -113,9 +113,9 @@ static int angle_class(const struct scree_vertex *v, const struct scree_vertex *
     double cross_v = vx_x * vy_y - vx_y * vy_x, cross_w = wy_x * wx_y - wy_y * wx_x;
     double dot_v = vx_x * vy_x + vx_y * vy_y, dot_w = wx_x * wy_x + wx_y * wy_y;
     double sum = (dot_v * cross_w + dot_w * cross_v) / (cross_v * cross_w);
-    int class = 0;
-    for (int i = 0; i < ANGLE_CLASSES - 1; i++) class += sum > limits[i];
-    return class;
+    int low = 0;
+    for (int step = ANGLE_CLASSES / 2; step > 0; step /= 2) low += sum > limits[low + step - 1] ? step : 0;
+    return low;
 }
 
 /* Whether the triangle beyond an outer edge makes way too. */

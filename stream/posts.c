@@ -1,5 +1,6 @@
 #include "stream/posts.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #define SMALL_BOX  256 /* posts of a bounding box that are looked at one by one */
@@ -14,7 +15,8 @@ struct edges {
 
 /* Whether the posts on an edge belong to the triangle that it is an edge of. */
 static inline bool is_owned(const struct scree_vertex *from, const struct scree_vertex *to, uint32_t twin) {
-    return to->y > from->y || (to->y == from->y && to->x > from->x) || twin == SURFACE_NONE;
+    bool north = to->y > from->y, level = to->y == from->y, east = to->x > from->x, border = twin == SURFACE_NONE;
+    return north | (level & east) | border; /* no branches: none of these can be foreseen */
 }
 
 static void edges_of(const struct surface *surface, uint32_t t, struct edges *edges) {
@@ -48,18 +50,20 @@ bool posts_belong(const struct surface *surface, uint32_t triangle, int32_t x, i
     return zeros < 2; /* two: a corner */
 }
 
-/* Stein's algorithm. */
-static uint32_t common_divisor(int64_t dx, int64_t dy) {
-    uint32_t a = (uint32_t)(dx < 0 ? -dx : dx), b = (uint32_t)(dy < 0 ? -dy : dy);
-    if (a == 0 || b == 0) return a + b;
-    int twos = __builtin_ctz(a | b);
-    for (a >>= __builtin_ctz(a); b != 0;) {
-        b >>= __builtin_ctz(b);
-        uint32_t least = a < b ? a : b;
-        b = a < b ? b - a : a - b;
-        a = least;
+uint32_t posts_divisor(uint32_t a, uint32_t b) {
+    while (b != 0) {
+        uint32_t rest = a % b;
+        a = b;
+        b = rest;
     }
-    return a << twos;
+    return a;
+}
+
+/* Into how many steps posts divide an edge. */
+static inline uint32_t steps_of(const struct surface *surface, const struct scree_vertex *from,
+                                const struct scree_vertex *to) {
+    uint32_t a = (uint32_t)abs(to->x - from->x), b = (uint32_t)abs(to->y - from->y);
+    return (a | b) < SURFACE_DIVISORS ? surface->divisor[a][b] : posts_divisor(a, b);
 }
 
 /* Pick's theorem: twice the area is 2 * inside + on the edges - 2. */
@@ -69,13 +73,13 @@ uint16_t posts_count(const struct surface *surface, uint32_t triangle) {
     const struct scree_vertex *c = &surface->vertices[at->vertex[2]];
     int64_t area2 = surface_area2(a, b, c);
     if (area2 == 1) return 0;
-    int64_t ab = common_divisor((int64_t)b->x - a->x, (int64_t)b->y - a->y);
-    int64_t bc = common_divisor((int64_t)c->x - b->x, (int64_t)c->y - b->y);
-    int64_t ca = common_divisor((int64_t)a->x - c->x, (int64_t)a->y - c->y);
+    int64_t ab = steps_of(surface, a, b);
+    int64_t bc = steps_of(surface, b, c);
+    int64_t ca = steps_of(surface, c, a);
     int64_t count = (area2 - (ab + bc + ca) + 2) / 2;
-    if (is_owned(a, b, at->twin[0])) count += ab - 1;
-    if (is_owned(b, c, at->twin[1])) count += bc - 1;
-    if (is_owned(c, a, at->twin[2])) count += ca - 1;
+    count += is_owned(a, b, at->twin[0]) * (ab - 1);
+    count += is_owned(b, c, at->twin[1]) * (bc - 1);
+    count += is_owned(c, a, at->twin[2]) * (ca - 1);
     return count < MOST_POSTS ? (uint16_t)count : MOST_POSTS;
 }
 

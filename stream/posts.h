@@ -21,6 +21,9 @@ struct post_models {
 };
 void post_models_start(struct post_models *models);
 
+/* The greatest common divisor; the other number where one is 0. */
+uint32_t posts_divisor(uint32_t a, uint32_t b);
+
 /* Whether the post belongs to the triangle. */
 bool posts_belong(const struct surface *surface, uint32_t triangle, int32_t x, int32_t y);
 

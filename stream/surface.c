@@ -55,6 +55,8 @@ void surface_rectangle(struct surface *surface, int32_t columns, int32_t rows, b
         surface->vertices[v] = (struct scree_vertex){v % 2 != 0 ? columns : 0, v / 2 != 0 ? rows : 0, 0};
     surface->vertex_count = 4;
     surface->triangle_count = 2;
+    for (uint32_t a = 0; a < SURFACE_DIVISORS; a++)
+        for (uint32_t b = 0; b < SURFACE_DIVISORS; b++) surface->divisor[a][b] = (unsigned char)posts_divisor(a, b);
     for (uint32_t t = 0; t < 2; t++) {
         memcpy(surface->triangles[t].vertex, corners[rising][t], sizeof corners[rising][t]);
         surface->triangles[t].twin[0] = surface->triangles[t].twin[1] = SURFACE_NONE;

@@ -22,10 +22,13 @@ struct surface_triangle {
     uint32_t first;   /* of a list of points that lie in it, kept by whoever uses the surface; SURFACE_NONE */
 };
 
+#define SURFACE_DIVISORS 32 /* lengths whose common divisors are looked up */
+
 struct surface {
     uint32_t vertex_count, triangle_count, vertex_capacity, triangle_capacity;
     struct scree_vertex *vertices;
     struct surface_triangle *triangles;
+    unsigned char divisor[SURFACE_DIVISORS][SURFACE_DIVISORS]; /* greatest common ones; set by surface_rectangle */
 };
 
 struct cavity {
