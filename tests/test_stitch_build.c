@@ -1,10 +1,12 @@
-/* Stitched borders on builds: any cut of the tiles that a build writes, each at any scale, is watertight. */
+/* Stitched borders on builds: any cut of the tiles that a build writes, each at any scale, is watertight, and so is
+ * what any camera chooses. */
 #include "src/build.h"
 #include "src/stream_set_io.h"
 #include "tests/cut_maker.h"
 #include "tests/fractal.h"
 #include "tests/raster_maker.h"
 #include "tests/seam_check.h"
+#include <scree/select.h>
 
 #include <CUnit/CUnit.h>
 #include <ftw.h>
@@ -22,6 +24,9 @@ static struct {
     uint32_t count;
     struct scree_tile_id ids[MOST_TILES]; /* by zoom */
     struct scree_player *players[MOST_TILES];
+    struct scree_terrain terrain;
+    struct scree_select_tile tiles[MOST_TILES]; /* own: where the tile's number is in `numbers` */
+    uint32_t numbers[MOST_TILES];
 } built;
 
 static double globe_m(double x, double y) {
@@ -94,6 +99,37 @@ static void make_built(const struct raster_fixture *fixture, enum profile profil
     nftw(folder, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
 }
 
+/* What scree_select chooses from. */
+static void link_built(void) {
+    const struct lattice *lattice = &built.lattice;
+    built.terrain = (struct scree_terrain){.profile = SCREE_GEODETIC, .lowest_m = -1000, .highest_m = 9000};
+    if (lattice->profile == PROFILE_LOCAL)
+        built.terrain = (struct scree_terrain){.profile = SCREE_LOCAL,
+                                               .lowest_m = -1000,
+                                               .highest_m = 9000,
+                                               .finest_zoom = lattice->finest_zoom,
+                                               .columns = lattice->columns - 1,
+                                               .rows = lattice->rows - 1,
+                                               .west = lattice->west,
+                                               .south = lattice->south,
+                                               .spacing_x = lattice->spacing_x,
+                                               .spacing_y = lattice->spacing_y,
+                                               .metres_x = lattice->metres_x,
+                                               .metres_y = lattice->metres_y};
+    for (uint32_t t = 0; t < built.count; t++) {
+        struct scree_arrays arrays;
+        const struct scree_stream_header *header = scree_player_header(built.players[t]);
+        struct scree_select_tile *tile = &built.tiles[t];
+        *tile = (struct scree_select_tile){
+            .id = built.ids[t], .header = header, .rungs_ready = header->rung_count, .own = &built.numbers[t]};
+        built.numbers[t] = t;
+        CU_ASSERT_EQUAL(scree_player_seek_rung(built.players[t], 0), SCREE_OK);
+        scree_player_look(built.players[t], &arrays);
+        scree_select_heights(&built.terrain, header, 0, arrays.vertices, &tile->lowest_m, &tile->highest_m);
+    }
+    CU_ASSERT_EQUAL(scree_select_link(&built.terrain, built.tiles, built.count, NULL), SCREE_OK);
+}
+
 static void release_built(void) {
     for (uint32_t t = 0; t < built.count; t++) scree_player_free(built.players[t]);
     built.count = 0;
@@ -132,6 +168,34 @@ static void seek_anywhere(uint64_t *state, struct scree_player *player) {
     } else {
         CU_ASSERT_EQUAL(scree_player_seek_rung(player, rung), SCREE_OK);
     }
+}
+
+/* What a camera above a random tile chooses, at the levels that it asks for. */
+static uint32_t choose_by_view(uint64_t *state, uint32_t *chosen) {
+    static struct scree_select_drawn drawn[MOST_TILES];
+    static struct scree_select_wanted wanted[MOST_TILES];
+    static double workspace[8 * MOST_TILES];
+    struct scree_selection selection = {.capacity = MOST_TILES,
+                                        .drawn = drawn,
+                                        .wanted = wanted,
+                                        .workspace = workspace,
+                                        .workspace_bytes = sizeof workspace};
+    struct scree_frame frame;
+    struct scree_view view;
+    struct scree_select_options options = {.measure = (enum scree_measure)cut_number(state, 2)};
+    double eye[3], height_m = exp2(10 + cut_number(state, 1300) / 100.0);
+    scree_stream_frame(scree_player_header(built.players[cut_number(state, (int32_t)built.count)]), &frame);
+    for (int k = 0; k < 3; k++) eye[k] = frame.origin[k] + height_m * frame.axes[2][k];
+    options.tolerance_px = exp2(cut_number(state, 800) / 100.0 - 4);
+    CU_ASSERT_EQUAL(scree_view_of_eye(eye, 1, 1000, &view, NULL), SCREE_OK);
+    CU_ASSERT_EQUAL(scree_select(&built.terrain, built.tiles, built.count, &view, &options, &selection, NULL),
+                    SCREE_OK);
+    CU_ASSERT_EQUAL(selection.wanted_count, 0);
+    for (uint32_t i = 0; i < selection.drawn_count; i++) {
+        chosen[i] = *(const uint32_t *)built.tiles[drawn[i].tile].own;
+        CU_ASSERT_EQUAL(scree_player_seek_level(built.players[chosen[i]], drawn[i].level), SCREE_OK);
+    }
+    return selection.drawn_count;
 }
 
 /* A stitch in arrays of the heap. */
@@ -184,12 +248,14 @@ static void check_cuts(uint64_t seed) {
         struct seam_check check = {0}, plain = {0};
         if (built.lattice.profile == PROFILE_GEODETIC) plain.period = check.period = built.lattice.columns - 1;
         cut.count = 0;
-        for (uint32_t root = 0; root < built.count && built.ids[root].zoom == 0; root++)
+        bool by_view = cut_number(&state, 2) == 0;
+        if (by_view) cut.count = choose_by_view(&state, chosen);
+        for (uint32_t root = 0; root < built.count && built.ids[root].zoom == 0 && !by_view; root++)
             cut.count = divide(&state, root, chosen, cut.count);
         for (uint32_t i = 0; i < cut.count; i++) {
             struct scree_player *player = built.players[chosen[i]];
             struct scree_arrays arrays;
-            seek_anywhere(&state, player);
+            if (!by_view) seek_anywhere(&state, player);
             scree_player_look(player, &arrays);
             cut.ids[i] = built.ids[chosen[i]];
             cut.vertex_counts[i] = arrays.vertex_count;
@@ -227,6 +293,7 @@ static void cuts_across_the_antimeridian(void) {
                                            .srs = "EPSG:4326",
                                            .height = globe_m};
     make_built(&fixture, PROFILE_GEODETIC, 0);
+    link_built();
     check_cuts(31);
     release_built();
 }
@@ -243,6 +310,7 @@ static void cuts_of_a_local_raster(void) {
                                            .srs = "EPSG:32611",
                                            .height = local_m};
     make_built(&fixture, PROFILE_LOCAL, 200);
+    link_built();
     check_cuts(32);
     release_built();
 }
