@@ -18,17 +18,23 @@ static enum scree_status add(struct scree_memory *memory, struct stream_cover *c
     return SCREE_OK;
 }
 
-/* The quarters of a tile that have no file of their own. */
-static enum scree_status add_quarters(struct scree_memory *memory, const struct lattice *lattice,
-                                      const struct tile_list *children, struct tile_id id, struct stream_cover *cover,
-                                      struct scree_error *error) {
+/* What of a tile has no finer file: all of it, or the quarters that have none. */
+static enum scree_status add_rest(struct scree_memory *memory, const struct lattice *lattice,
+                                  const struct tile_list *children, struct tile_id id, struct stream_cover *cover,
+                                  struct scree_error *error) {
     enum scree_status status = SCREE_OK;
-    for (int child = 0; child < 4 && status == SCREE_OK; child++) {
+    struct stream_piece quarters[4];
+    int count = 0, listed = 0;
+    for (int child = 0; child < 4; child++) {
         struct tile_id child_id = stream_child(id, child);
-        struct stream_piece piece = {id, true, lattice_tile_window(lattice, child_id)};
-        if (piece.window.columns > 0 && tile_list_find(children, child_id) == TILE_NOT_LISTED)
-            status = add(memory, cover, piece, error);
+        struct stream_piece quarter = {id, true, lattice_tile_window(lattice, child_id)};
+        bool is_listed = tile_list_find(children, child_id) != TILE_NOT_LISTED;
+        listed += is_listed;
+        if (quarter.window.columns > 0 && !is_listed) quarters[count++] = quarter;
     }
+    if (listed == 0)
+        return add(memory, cover, (struct stream_piece){id, true, lattice_tile_window(lattice, id)}, error);
+    for (int i = 0; i < count && status == SCREE_OK; i++) status = add(memory, cover, quarters[i], error);
     return status;
 }
 
@@ -43,7 +49,7 @@ enum scree_status stream_cover_new(struct scree_memory *memory, const struct lat
     }
     for (int coarser = zoom - 1; coarser >= min_zoom && status == SCREE_OK; coarser--)
         for (uint32_t i = 0; i < tiles[coarser].count && status == SCREE_OK; i++)
-            status = add_quarters(memory, lattice, &tiles[coarser + 1], tiles[coarser].ids[i], cover, error);
+            status = add_rest(memory, lattice, &tiles[coarser + 1], tiles[coarser].ids[i], cover, error);
     return status;
 }
 

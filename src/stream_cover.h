@@ -2,7 +2,7 @@
  *
  * All tiles of the zoom; and where a coarser tile has a child without a file (the data do not touch it), that tile's
  * quarter there. A tile at its finest rung is the union of its children at their coarsest, so no triangle of it crosses
- * into another quarter. */
+ * into another quarter; a tile that has no children at all is shown whole. */
 #ifndef SCREE_STREAM_COVER_H
 #define SCREE_STREAM_COVER_H
 
@@ -13,7 +13,7 @@
 
 struct stream_piece {
     struct tile_id id;
-    bool is_part;                 /* a quarter, at the tile's finest rung */
+    bool is_part;                 /* of a coarser zoom: shown at the tile's finest rung */
     struct lattice_window window; /* what of the tile is shown: a quarter, or all that it covers */
 };
 
