@@ -42,14 +42,14 @@ expect 0 '"triangles"' info --format json "$tile"
 expect 1 'layer.json' info "$folder"
 
 for ending in ply obj stl off; do
-    expect 0 'zoom 2, ' extract "$folder/out" -o "$folder/mesh.$ending"
+    expect 0 'zoom 2, ' extract "$folder/out/terrain" -o "$folder/mesh.$ending"
     [ -s "$folder/mesh.$ending" ] || failed=1
 done
-expect 0 'zoom 0, ' extract "$folder/out" -o "$folder/mesh.ply" --error 100000
+expect 0 'zoom 0, ' extract "$folder/out/terrain" -o "$folder/mesh.ply" --error 100000
 expect 0 'zoom 1, ' extract "$folder/out" -o "$folder/mesh.ply" --zoom 1
 expect 0 'zoom 2, ' extract "$tile" -o "$folder/mesh.ply"
-expect 1 'that fine' extract "$folder/out" -o "$folder/mesh.ply" --error 0.001
-expect 1 'no tile 2/9/9' extract "$folder/out" -o "$folder/mesh.ply" --tile 2/9/9
+expect 1 'that fine' extract "$folder/out/terrain" -o "$folder/mesh.ply" --error 0.001
+expect 1 'no tile 2/9/9' extract "$folder/out/terrain" -o "$folder/mesh.ply" --tile 2/9/9
 expect 2 'exclude' extract "$folder/out" -o "$folder/mesh.ply" --zoom 1 --error 5
 expect 2 'zoom/x/y' extract "$folder/out" -o "$folder/mesh.ply" --tile 2/1
 
