@@ -221,15 +221,21 @@ static enum scree_status expected(const char *name) {
     return strncmp(name, "bad-", 4) == 0 ? SCREE_E_CORRUPT : SCREE_E_UNSUPPORTED;
 }
 
-static void push_file(const char *folder, const char *name) {
-    static unsigned char bytes[1 << 16];
+static size_t read_corpus_file(const char *name, unsigned char *bytes, size_t capacity_bytes) {
     char path[1024];
-    struct scree_error error = {0};
-    snprintf(path, sizeof path, "%s/%s", folder, name);
+    const char *top = getenv("TOP_SRCDIR");
+    snprintf(path, sizeof path, "%s/tests/corpus/stream/%s", top != NULL ? top : TOP_SRCDIR_DEFAULT, name);
     FILE *file = fopen(path, "rb");
     CU_ASSERT_PTR_NOT_NULL_FATAL(file);
-    size_t size_bytes = fread(bytes, 1, sizeof bytes, file);
+    size_t size_bytes = fread(bytes, 1, capacity_bytes, file);
     fclose(file);
+    return size_bytes;
+}
+
+static void push_file(const char *name) {
+    static unsigned char bytes[1 << 16];
+    struct scree_error error = {0};
+    size_t size_bytes = read_corpus_file(name, bytes, sizeof bytes);
     CU_ASSERT(size_bytes > 0 && size_bytes <= 4096);
     enum scree_status status = push(bytes, size_bytes, &error, NULL);
     if (status != expected(name)) printf("\n    %s: status %d, %s\n", name, (int)status, error.text);
@@ -237,6 +243,30 @@ static void push_file(const char *folder, const char *name) {
     CU_ASSERT_EQUAL(error.text[0] == '\0', status == SCREE_OK);
     for (size_t cut_bytes = 0; cut_bytes < size_bytes && status == SCREE_OK; cut_bytes++)
         CU_ASSERT_EQUAL(push(bytes, cut_bytes, NULL, NULL), SCREE_MORE);
+}
+
+/* The mesh at the end of docs/stream.md. */
+static void the_example_is_as_documented(void) {
+    static const struct scree_vertex vertices[] = {{0, 0, 2351}, {3, 0, 2341}, {0, 2, 2363}, {3, 2, 2355},
+                                                   {0, 1, 2363}, {3, 1, 2353}, {2, 0, 2349}};
+    static const uint32_t base[] = {0, 1, 4, 3, 2, 4, 1, 3, 4};
+    static const uint32_t finest[] = {0, 6, 4, 3, 2, 5, 1, 5, 6, 2, 4, 5, 5, 4, 6};
+    unsigned char bytes[1024];
+    size_t size_bytes = read_corpus_file("good-example.scree", bytes, sizeof bytes);
+    struct scree_player *player;
+    struct scree_arrays arrays;
+    CU_ASSERT_EQUAL_FATAL(scree_player_new(NULL, &player, NULL), SCREE_OK);
+    CU_ASSERT_EQUAL_FATAL(scree_player_push(player, bytes, size_bytes, NULL), SCREE_OK);
+    scree_player_look(player, &arrays);
+    CU_ASSERT_EQUAL_FATAL(arrays.triangle_count, 3);
+    CU_ASSERT_EQUAL(memcmp(arrays.indices, base, sizeof base), 0);
+    scree_player_seek_rung(player, 2);
+    scree_player_look(player, &arrays);
+    CU_ASSERT_EQUAL_FATAL(arrays.vertex_count, 7);
+    CU_ASSERT_EQUAL_FATAL(arrays.triangle_count, 5);
+    CU_ASSERT_EQUAL(memcmp(arrays.vertices, vertices, sizeof vertices), 0);
+    CU_ASSERT_EQUAL(memcmp(arrays.indices, finest, sizeof finest), 0);
+    scree_player_free(player);
 }
 
 /* good-* are read, also those that were made long ago; bad-* and unsupported-* are told apart. */
@@ -250,7 +280,7 @@ static void the_corpus_is_as_it_says(void) {
     for (struct dirent *entry; (entry = readdir(listing)) != NULL;) {
         const char *ending = strrchr(entry->d_name, '.');
         if (ending == NULL || strcmp(ending, ".scree") != 0 || strncmp(entry->d_name, "finding-", 8) == 0) continue;
-        push_file(folder, entry->d_name);
+        push_file(entry->d_name);
         files++;
     }
     closedir(listing);
@@ -269,5 +299,6 @@ int suite_hostile(void) {
     CU_ADD_TEST(suite, real_streams_are_cheap);
     CU_ADD_TEST(suite, a_limit_is_kept);
     CU_ADD_TEST(suite, the_corpus_is_as_it_says);
+    CU_ADD_TEST(suite, the_example_is_as_documented);
     return 0;
 }
