@@ -107,8 +107,8 @@ struct scree_select_options {
 
 struct scree_select_drawn {
     uint32_t tile;   /* index into the tiles */
-    uint32_t rung;   /* index of the mesh to draw; it has arrived */
-    double level;    /* the same as a continuous scale, above rung - 1, for morphing: scree_player_seek_level */
+    uint32_t rung;   /* index of the mesh to draw, which has arrived: it keeps the tolerance where one does */
+    double level;    /* for morphing, scree_player_seek_level: above rung - 1, where the error passes the tolerance */
     double error_px; /* of the rung */
 };
 
