@@ -23,10 +23,11 @@ struct encoder {
     uint32_t *next;    /* in the list of its triangle */
     /* vertices still to come, by the triangle that they lie in */
     uint32_t *first;
-    uint32_t layer_removals; /* vertices of the present layer are taken out by removals from this one on */
-    struct pending *places;  /* of one triangle */
-    uint32_t taken;          /* the vertex at hand */
-    uint32_t gathered;       /* vertices whose triangles make way, linked */
+    uint32_t layer_removals;  /* vertices of the present layer are taken out by removals from this one on */
+    struct pending *places;   /* of one triangle */
+    uint32_t taken;           /* the vertex at hand */
+    uint32_t gathered;        /* vertices whose triangles make way, linked */
+    uint32_t vertices_before; /* the present block */
     unsigned char *blocks;
     size_t blocks_bytes, blocks_capacity;
 };
@@ -128,6 +129,7 @@ static enum scree_status code_layer(struct encoder *encoder, uint32_t first, uin
 static void begin_block(struct encoder *encoder) {
     scree_release(encoder->memory, encoder->coder.written);
     range_coder_write(encoder->memory, &encoder->coder);
+    encoder->vertices_before = encoder->surface.vertex_count;
     encoder->increment.coder = &encoder->coder;
 }
 
@@ -136,6 +138,10 @@ static enum scree_status end_block(struct encoder *encoder, const struct recordi
                                    struct scree_error *error) {
     enum scree_status status = range_coder_finish(&encoder->coder, error);
     if (status != SCREE_OK) return status;
+    uint32_t added = encoder->surface.vertex_count - encoder->vertices_before;
+    if (added > (uint64_t)STREAM_VERTICES_PER_BYTE * encoder->coder.written_bytes)
+        return scree_fail(error, SCREE_E_LIMIT, "an increment of %u vertices takes fewer bytes than a reader believes",
+                          added);
     size_t size_bytes = encoder->coder.written_bytes, wanted = encoder->blocks_bytes + size_bytes;
     if (wanted > encoder->blocks_capacity) {
         unsigned char *larger = scree_reallocate(encoder->memory, encoder->blocks, 2 * wanted, 1, "a stream", error);

@@ -15,7 +15,7 @@
 
 #include <scree/stream.h>
 
-#define STREAM_VERTICES_PER_BYTE 8 /* level ground with a vertex on every post has 2 */
+#define STREAM_VERTICES_PER_BYTE 16 /* level ground with a vertex on every post has 2, terraces up to 6 */
 
 /* Bytes that a header with so many rungs takes. */
 size_t stream_header_bound(uint32_t rung_count);

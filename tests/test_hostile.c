@@ -15,7 +15,7 @@
 #include <time.h>
 
 /* What docs/stream.md promises: a player's memory against the bytes that it was given. */
-#define BYTES_PER_BYTE 40000
+#define BYTES_PER_BYTE 80000
 #define BYTES_FREE     (1 << 20)
 
 struct bytes {
