@@ -67,24 +67,42 @@ static bool bench_case(const struct product_case *product, const char *folder, c
     const char *fractal[] = {"tests/fractal_dem", "-o", raster, "--size", product->size, "--epsg", "32611", NULL};
     const char *build[] = {"./scree",          "build", raster, "-o", out, "-q", "--profile", product->profile,
                            "--finest-octaves", "0",     NULL};
+    const char *bare[] = {"./scree",
+                          "build",
+                          raster,
+                          "-o",
+                          out,
+                          "-q",
+                          "--products",
+                          "terrain",
+                          "--profile",
+                          product->profile,
+                          "--finest-octaves",
+                          "0",
+                          "--no-normals",
+                          NULL};
     const char *clear[] = {"rm", "-rf", out, product->size != NULL ? raster : NULL, NULL};
     if (product->file != NULL && access(raster, R_OK) != 0) {
         printf("%s: left out, %s is not there (SCREE_TEST_DATA names the folder)\n", product->name, raster);
         return true;
     }
     bool fine = (product->size == NULL || run(fractal)) && run(build);
+    uint64_t streams = tile_bytes(out, "stream"), terrain = tile_bytes(out, "terrain");
+    fine = fine && run(bare);
     if (fine) {
-        uint64_t streams = tile_bytes(out, "stream"), terrain = tile_bytes(out, "terrain");
+        uint64_t without_normals = tile_bytes(out, "terrain");
         double ratio = (double)streams / (double)terrain;
-        printf("%-30s %10llu %10llu %7.3f  %s\n", product->name, (unsigned long long)streams,
-               (unsigned long long)terrain, ratio, ratio <= TARGET_RATIO ? "kept" : "missed");
+        printf("%-30s %10llu %10llu %7.3f  %s %10llu %7.3f\n", product->name, (unsigned long long)streams,
+               (unsigned long long)terrain, ratio, ratio <= TARGET_RATIO ? "kept  " : "missed",
+               (unsigned long long)without_normals, (double)streams / (double)without_normals);
     }
     return run(clear) && fine;
 }
 
 bool bench_products(const char *folder, const char *data) {
     bool fine = true;
-    printf("\nAll zooms of a build with --finest-octaves 0\n%-30s %10s %10s %7s\n", "", "streams", "terrain", "ratio");
+    printf("\nAll zooms of a build with --finest-octaves 0\n%-30s %10s %10s %7s  %6s %10s %7s\n", "", "streams",
+           "terrain", "ratio", "", "no normals", "ratio");
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) fine = bench_case(&cases[i], folder, data) && fine;
     return fine;
 }
