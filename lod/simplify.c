@@ -338,13 +338,24 @@ static struct triangle_error measure(const struct mesh *mesh, const struct mesh_
                                   &mesh->vertices[triangle->vertex[1]].at, &mesh->vertices[triangle->vertex[2]].at);
 }
 
+/* A vertex stands at its post, but for the rounding of its height. The smallest triangles hold no other posts, and
+ * measuring them leaves their corners out. */
+static float vertex_error_m(const struct sample *at, const struct samples *samples) {
+    if (samples->posts == NULL) return 0;
+    return fabsf(samples->posts[(int64_t)at->y * samples->stride + at->x] - at->height_m);
+}
+
 double mesh_max_error_m(const struct mesh *mesh, const struct samples *samples) {
     struct samples at_posts = *samples;
     float max_m = 0;
     at_posts.rounding_steps = 0;
-    for (int32_t t = 0; t < mesh->triangle_count; t++)
-        if (mesh->triangles[t].vertex[0] != MESH_NONE)
-            max_m = fmaxf(max_m, measure(mesh, &mesh->triangles[t], &at_posts).max_m);
+    for (int32_t t = 0; t < mesh->triangle_count; t++) {
+        const struct mesh_triangle *triangle = &mesh->triangles[t];
+        if (triangle->vertex[0] == MESH_NONE) continue;
+        max_m = fmaxf(max_m, measure(mesh, triangle, &at_posts).max_m);
+        for (int k = 0; k < 3; k++)
+            max_m = fmaxf(max_m, vertex_error_m(&mesh->vertices[triangle->vertex[k]].at, samples));
+    }
     return max_m;
 }
 
