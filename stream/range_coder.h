@@ -73,6 +73,11 @@ static inline void bit_learn(struct bit_model *model, bool bit) {
     if (model->seen < BIT_MEMORY) model->seen++;
 }
 
+/* Lets what comes overrule what has been learned: it counts as `memory` bits at the most. */
+static inline void bit_hurry(struct bit_model *model, uint16_t memory) {
+    if (model->seen > memory) model->seen = memory;
+}
+
 /* One bit; `bit` is looked at only when writing. */
 static inline bool code_bit(struct range_coder *coder, struct bit_model *model, bool bit) {
     if (coder->writing) {

@@ -33,7 +33,8 @@ struct surface {
 
 struct cavity {
     uint32_t triangle_count, edge_count;
-    bool open; /* the point lies on the border */
+    bool open;                        /* the point lies on the border */
+    uint32_t common_count, common[3]; /* corners that all triangles have in common: of a fan at least one */
     uint32_t triangles[CAVITY_MOST];
     uint32_t edges[CAVITY_MOST + 2]; /* outer half-edges of the triangles, counter-clockwise; an open cavity's begin
                                         at the border vertex that follows the point */
