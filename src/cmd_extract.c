@@ -32,7 +32,7 @@ static const char help[] =
     "zoom that has the rung; where only coarser ones have data, by those, and their borders are made to meet.\n"
     "scree info tells SVO and max error of every rung. A bound holds for every tile where data are.\n\n"
     "The local profile keeps x and y of its CRS, with heights in metres.\n"
-    "Memory grows with the mesh: about 100 bytes a triangle, and 400 where scales meet; at most 2^30 of them.\n";
+    "Memory grows with the mesh: about 200 bytes a triangle; more than 2^30 of them are refused.\n";
 
 struct arguments {
     const char *path, *output;

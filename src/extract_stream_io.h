@@ -1,7 +1,7 @@
 /* The mesh of streams at a scale: of one tile, or of the whole set, every place once and all tiles joined.
  *
- * Memory grows with what comes out, and with the one tile that is being read: about 60 bytes a vertex and 30 a
- * triangle, three times that where tiles of different scales have to be stitched. */
+ * Memory grows with what comes out, and with the one tile that is being read: about 200 bytes a triangle, the writing
+ * of the mesh file included. */
 #ifndef SCREE_EXTRACT_STREAM_IO_H
 #define SCREE_EXTRACT_STREAM_IO_H
 
