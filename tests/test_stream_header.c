@@ -295,8 +295,8 @@ static void rungs_that_cannot_be_are_refused(void) {
     }
     CU_ASSERT_EQUAL(read_altered(second + 14, 4, bits_of_float(100.0f)), SCREE_OK);
     CU_ASSERT_EQUAL(read_altered(second + 14, 4, bits_of_float(100.5f)), SCREE_E_CORRUPT);
-    CU_ASSERT_EQUAL(read_altered(base + 22, 4, 12), SCREE_OK); /* bytes: 96 vertices and the corners */
-    CU_ASSERT_EQUAL(read_altered(base + 22, 4, 11), SCREE_E_CORRUPT);
+    CU_ASSERT_EQUAL(read_altered(base + 22, 4, 6), SCREE_OK); /* bytes: 96 vertices and the corners */
+    CU_ASSERT_EQUAL(read_altered(base + 22, 4, 5), SCREE_E_CORRUPT);
     CU_ASSERT_EQUAL(read_altered(second + 22, 4, 0), SCREE_E_CORRUPT);
     CU_ASSERT_EQUAL(read_altered(second + 22, 4, UINT32_MAX), SCREE_OK); /* to be waited for, not believed */
 }
