@@ -1,5 +1,6 @@
 #include "src/tile_build.h"
 
+#include "lod/compact.h"
 #include "src/quantized_mesh.h"
 #include "src/stream_place.h"
 #include "stream/encode.h"
@@ -122,6 +123,7 @@ static enum scree_status take_grid_down(const struct tile_plan *plan, struct til
     enum scree_status status = look_ahead(plan, walk, ladder->finest_rung - (ladder->lossless ? 1 : 0), error);
     walk->rung = ladder->finest_rung;
     if (status == SCREE_OK && !ladder->lossless) status = take_to(plan, walk, ladder->finest_rung, error);
+    if (status == SCREE_OK && !ladder->lossless) status = simplifier_compact(&walk->tile.simplifier, error);
     if (status == SCREE_OK) status = start_recording(walk, record, tile_max_error_m(&walk->tile), error);
     if (status == SCREE_OK) status = walk_to(plan, walk, RUNGS_A_ZOOM * walk->id.zoom, error);
     if (status == SCREE_OK) walk->max_error_m = tile_max_error_m(&walk->tile);

@@ -1,6 +1,7 @@
 /* The collapse: errors against brute force, the bound against the judge that shares no code with it, and what else is
  * promised to the tiles. */
 #include "lod/code_collapse.h"
+#include "lod/compact.h"
 #include "lod/grid_error.h"
 #include "lod/merge.h"
 #include "lod/quadric.h"
@@ -466,6 +467,39 @@ static void an_observer_sees_every_removal(void) {
     end_field(&field);
 }
 
+/* ---- gaps ---- */
+
+static void closing_gaps_changes_no_result(void) {
+    static struct field field, compacted;
+    const struct simplify_options options = {0};
+    struct scree_mesh mesh, same;
+    start_field(&field, 8, &options);
+    start_field(&compacted, 8, &options);
+    for (float tolerance_m = 4; tolerance_m < 40; tolerance_m *= 1.5F) {
+        simplify_interior(&field.simplifier, tolerance_m);
+        simplify_interior(&compacted.simplifier, tolerance_m);
+        CU_ASSERT_EQUAL_FATAL(simplifier_compact(&compacted.simplifier, NULL), SCREE_OK);
+        CU_ASSERT_PTR_NULL(mesh_fault(&compacted.mesh, CELLS, CELLS));
+        CU_ASSERT_EQUAL(compacted.mesh.vertex_count, field.mesh.live_vertices);
+        CU_ASSERT_EQUAL(compacted.mesh.triangle_count, field.mesh.live_triangles);
+        CU_ASSERT_EQUAL_FATAL(mesh_export_new(&field.memory, &field.mesh, &mesh, NULL), SCREE_OK);
+        CU_ASSERT_EQUAL_FATAL(mesh_export_new(&compacted.memory, &compacted.mesh, &same, NULL), SCREE_OK);
+        CU_ASSERT_EQUAL_FATAL(mesh.vertex_count, same.vertex_count);
+        CU_ASSERT_EQUAL(memcmp(mesh.vertices, same.vertices, mesh.vertex_count * sizeof *mesh.vertices), 0);
+        CU_ASSERT_EQUAL(memcmp(mesh.corners, same.corners, mesh.triangle_count * 3 * sizeof *mesh.corners), 0);
+        scree_release(&field.memory, mesh.vertices);
+        scree_release(&field.memory, mesh.corners);
+        scree_release(&compacted.memory, same.vertices);
+        scree_release(&compacted.memory, same.corners);
+    }
+    compacted.memory.fail_request = compacted.memory.requests + 2;
+    size_t used_bytes = compacted.memory.used_bytes;
+    CU_ASSERT_EQUAL(simplifier_compact(&compacted.simplifier, NULL), SCREE_E_MEMORY);
+    CU_ASSERT_EQUAL(compacted.memory.used_bytes, used_bytes);
+    end_field(&compacted);
+    end_field(&field);
+}
+
 /* ---- merging, and memory ---- */
 
 static void lack_of_memory_leaves_no_simplifier(void) {
@@ -546,6 +580,7 @@ int suite_simplify(void) {
     CU_ADD_TEST(suite, a_pyramid_has_the_error_of_its_geometry);
     CU_ADD_TEST(suite, the_scale_grows_as_a_mesh_gets_coarser);
     CU_ADD_TEST(suite, an_observer_sees_every_removal);
+    CU_ADD_TEST(suite, closing_gaps_changes_no_result);
     CU_ADD_TEST(suite, lack_of_memory_leaves_no_simplifier);
     CU_ADD_TEST(suite, lack_of_memory_leaves_no_merged_mesh);
     CU_ADD_TEST(suite, heights_that_differ_are_not_merged);
