@@ -1,12 +1,12 @@
 /* Static tiles as they are written: the ellipsoid, culling aids, the order of triangles, the codes. Tiles are read back
  * by src/quantized_mesh_decode.c, which shares no code with the writer. */
-#include "stream/ellipsoid.h"
 #include "src/occlusion.h"
 #include "src/octahedral.h"
 #include "src/quantized_mesh.h"
 #include "src/quantized_mesh_decode.h"
 #include "src/quantized_mesh_order.h"
 #include "src/verify_tile.h"
+#include "stream/ellipsoid.h"
 
 #include <CUnit/CUnit.h>
 #include <math.h>
