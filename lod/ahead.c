@@ -26,7 +26,7 @@ static bool inner_admitted(const struct ahead *ahead, const struct sample *a, co
                            const struct sample *c, float error_m) {
     if (error_m > ahead->rungs[ahead->next].tolerance_m) return false;
     for (int i = ahead->next; i < ahead->count; i++)
-        if (ahead->rungs[i].codes.span != 0 && !simplify_positive(&ahead->rungs[i].codes, a, b, c)) return false;
+        if (ahead->rungs[i].codes.span != 0 && !codes_positive(&ahead->rungs[i].codes, a, b, c)) return false;
     return true;
 }
 
@@ -34,9 +34,8 @@ static bool same_place(const struct sample *a, const struct sample *b) {
     return a->x == b->x && a->y == b->y;
 }
 
-bool ahead_admits(const struct simplifier *simplifier, const struct sample *a, const struct sample *b,
-                  const struct sample *c, float error_m) {
-    const struct ahead *ahead = simplifier->options.ahead;
+bool ahead_admits(const struct ahead *ahead, const struct sample *a, const struct sample *b, const struct sample *c,
+                  float error_m) {
     if (ahead == NULL) return true;
     if (!on_border(ahead, a) && !on_border(ahead, b) && !on_border(ahead, c))
         return inner_admitted(ahead, a, b, c, error_m);
@@ -47,7 +46,7 @@ bool ahead_admits(const struct simplifier *simplifier, const struct sample *a, c
         for (int corner = 0; corner < 3; corner++) moved = move(ahead, rung, &at[corner]) || moved;
         if (moved && (same_place(&at[0], &at[1]) || same_place(&at[1], &at[2]) || same_place(&at[2], &at[0])))
             return true;
-        if ((moved || rung->codes.span != 0) && !simplify_positive(&rung->codes, &at[0], &at[1], &at[2])) return false;
+        if ((moved || rung->codes.span != 0) && !codes_positive(&rung->codes, &at[0], &at[1], &at[2])) return false;
         if (moved) error_m = samples_triangle_error(&rung->samples, &at[0], &at[1], &at[2]).max_m;
         if (error_m > rung->tolerance_m) return false;
     }

@@ -11,7 +11,8 @@
 #ifndef SCREE_LOD_AHEAD_H
 #define SCREE_LOD_AHEAD_H
 
-#include "lod/border_collapse.h"
+#include "lod/border.h"
+#include "lod/position_code.h"
 
 struct ahead_rung {
     float tolerance_m;
@@ -27,8 +28,8 @@ struct ahead {
 };
 
 /* Whether a triangle, whose error as it is is `error_m`, leaves all rungs to come within reach: at each of them it is
- * gone, or positive, in its codes too, and within the tolerance. True when the simplifier does not look ahead. */
-bool ahead_admits(const struct simplifier *simplifier, const struct sample *a, const struct sample *b,
-                  const struct sample *c, float error_m);
+ * gone, or positive, in its codes too, and within the tolerance. True without rungs to come, NULL. */
+bool ahead_admits(const struct ahead *ahead, const struct sample *a, const struct sample *b, const struct sample *c,
+                  float error_m);
 
 #endif

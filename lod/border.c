@@ -7,6 +7,14 @@
 
 #define NEVER INFINITY
 
+enum tile_side border_side(int32_t columns, int32_t rows, const struct sample *at, int32_t *position) {
+    bool on_column = at->x == 0 || at->x == columns, on_row = at->y == 0 || at->y == rows;
+    if (on_column == on_row) return SIDE_COUNT;
+    *position = on_column ? at->y : at->x;
+    if (on_column) return at->x == 0 ? SIDE_WEST : SIDE_EAST;
+    return at->y == 0 ? SIDE_SOUTH : SIDE_NORTH;
+}
+
 /* A line while vertices leave it: links between the kept ones and the cost of each. */
 struct work {
     int32_t previous[BORDER_MAX_VERTICES], next[BORDER_MAX_VERTICES];

@@ -22,6 +22,12 @@
  * costs no more than a few percent of triangles against free borders. */
 #define BORDER_SHARE 0.7
 
+enum tile_side { SIDE_SOUTH, SIDE_EAST, SIDE_NORTH, SIDE_WEST, SIDE_COUNT };
+
+/* The side of a window of `columns` x `rows` steps on which a point that is no corner lies, and its position from the
+ * side's south or west end; SIDE_COUNT inside and at corners. */
+enum tile_side border_side(int32_t columns, int32_t rows, const struct sample *at, int32_t *position);
+
 struct border_sample {
     int32_t position; /* lattice steps from the start of the line */
     float height_m;

@@ -5,14 +5,6 @@
 
 #include <math.h>
 
-enum tile_side border_side(int32_t columns, int32_t rows, const struct sample *at, int32_t *position) {
-    bool on_column = at->x == 0 || at->x == columns, on_row = at->y == 0 || at->y == rows;
-    if (on_column == on_row) return SIDE_COUNT;
-    *position = on_column ? at->y : at->x;
-    if (on_column) return at->x == 0 ? SIDE_WEST : SIDE_EAST;
-    return at->y == 0 ? SIDE_SOUTH : SIDE_NORTH;
-}
-
 /* Errors of the fan from ring[target] (0 or degree) that a collapse along the border leaves; INFINITY when a triangle
  * would lose its area, or a rung to come get out of reach. */
 static float fan_error_m(const struct simplifier *simplifier, const struct star *star, int32_t target) {
@@ -22,7 +14,7 @@ static float fan_error_m(const struct simplifier *simplifier, const struct star 
         const struct sample *a = &star->at[target], *b = &star->at[i], *c = &star->at[i + 1];
         if (sample_area2(a, b, c) <= 0) return INFINITY;
         float error_m = samples_triangle_error(&simplifier->samples, a, b, c).max_m;
-        if (!ahead_admits(simplifier, a, b, c, error_m)) return INFINITY;
+        if (!ahead_admits(simplifier->options.ahead, a, b, c, error_m)) return INFINITY;
         largest_m = fmaxf(largest_m, error_m);
     }
     return largest_m;
@@ -50,7 +42,8 @@ static void triangulate(const struct simplifier *simplifier, const struct star *
                 float here_m =
                     samples_triangle_error(&simplifier->samples, &star->at[i], &star->at[k], &star->at[j]).max_m;
                 if (fmaxf(both_m, here_m) >= polygon->error_m[i][j]) continue;
-                if (!ahead_admits(simplifier, &star->at[i], &star->at[k], &star->at[j], here_m)) continue;
+                if (!ahead_admits(simplifier->options.ahead, &star->at[i], &star->at[k], &star->at[j], here_m))
+                    continue;
                 polygon->error_m[i][j] = fmaxf(both_m, here_m);
                 polygon->apex[i][j] = (unsigned char)k;
             }

@@ -5,12 +5,6 @@
 #include "lod/border.h"
 #include "lod/simplify.h"
 
-enum tile_side { SIDE_SOUTH, SIDE_EAST, SIDE_NORTH, SIDE_WEST, SIDE_COUNT };
-
-/* The side of a window of `columns` x `rows` steps on which a point that is no corner lies, and its position from the
- * side's south or west end; SIDE_COUNT inside and at corners. */
-enum tile_side border_side(int32_t columns, int32_t rows, const struct sample *at, int32_t *position);
-
 /* Removes the border vertices that their lines do not keep. Each goes by a half-edge collapse along the border where
  * one is within the tolerance, else by the retriangulation of its star with the least error: edges at the vertex are
  * flipped until a collapse gives it. Border sets are law: where even that passes the tolerance it is done all the

@@ -6,8 +6,8 @@
 
 static bool positive_in_codes(const struct simplifier *simplifier, const struct mesh_triangle *triangle) {
     const struct mesh_vertex *vertices = simplifier->mesh->vertices;
-    return simplify_positive(&simplifier->options.codes, &vertices[triangle->vertex[0]].at,
-                             &vertices[triangle->vertex[1]].at, &vertices[triangle->vertex[2]].at);
+    return codes_positive(&simplifier->options.codes, &vertices[triangle->vertex[0]].at,
+                          &vertices[triangle->vertex[1]].at, &vertices[triangle->vertex[2]].at);
 }
 
 /* Collapses one corner of the triangle. With `cut_ears` its star first loses ears until three triangles are left, which

@@ -28,8 +28,8 @@ bool ear_cut(struct simplifier *simplifier, struct star *star) {
         const struct sample *a = &star->at[i > 0 ? i - 1 : star->degree - 1], *b = &star->at[i], *c = &star->at[i + 1];
         if (sample_area2(a, b, c) <= 0 || sample_area2(at, a, c) <= 0) continue;
         float error_m = samples_triangle_error(&simplifier->samples, a, b, c).max_m;
-        if (error_m >= least_m || !ahead_admits(simplifier, a, b, c, error_m) ||
-            !ahead_admits(simplifier, at, a, c, 0)) /* it goes with the vertex */
+        if (error_m >= least_m || !ahead_admits(simplifier->options.ahead, a, b, c, error_m) ||
+            !ahead_admits(simplifier->options.ahead, at, a, c, 0)) /* it goes with the vertex */
             continue;
         least_m = error_m;
         ear = i;

@@ -25,30 +25,6 @@ struct candidate {
     struct triangle_error errors[MESH_MAX_DEGREE];
 };
 
-static struct sample code_of(const struct code_frame *frame, const struct sample *at) {
-    return (struct sample){position_code((int64_t)at->x + frame->x, frame->span),
-                           position_code((int64_t)at->y + frame->y, frame->span), 0};
-}
-
-/* Whether the triangle, of twice that area, is so thick that rounding to codes cannot turn it over: each difference of
- * coordinates is off by span / POSITION_TOP steps at the most. Codes finer than the lattice do turn thin ones over. */
-static bool is_thick_in_codes(const struct code_frame *frame, const struct sample *a, const struct sample *b,
-                              const struct sample *c, int64_t area2) {
-    if (frame->span > POSITION_TOP) return false;
-    int64_t reach = llabs((int64_t)b->x - a->x) + llabs((int64_t)b->y - a->y) + llabs((int64_t)c->x - a->x) +
-                    llabs((int64_t)c->y - a->y);
-    return area2 * POSITION_TOP > frame->span * (reach + 2);
-}
-
-bool simplify_positive(const struct code_frame *codes, const struct sample *a, const struct sample *b,
-                       const struct sample *c) {
-    int64_t area2 = sample_area2(a, b, c);
-    if (area2 <= 0) return false;
-    if (codes->span == 0 || is_thick_in_codes(codes, a, b, c, area2)) return true;
-    struct sample coded[3] = {code_of(codes, a), code_of(codes, b), code_of(codes, c)};
-    return sample_area2(&coded[0], &coded[1], &coded[2]) > 0;
-}
-
 /* The triangles of a closed star that survive a collapse into ring[target] are those of index target + 1 up to
  * target + degree - 2, around the ring. */
 static inline int32_t around(int32_t index, int32_t degree) {
@@ -58,7 +34,7 @@ static inline int32_t around(int32_t index, int32_t degree) {
 static bool stays_positive(const struct code_frame *codes, const struct star *star, int32_t target) {
     for (int32_t j = 1; j < star->degree - 1; j++) {
         int32_t i = around(target + j, star->degree);
-        if (!simplify_positive(codes, &star->at[target], &star->at[i], &star->at[i + 1])) return false;
+        if (!codes_positive(codes, &star->at[target], &star->at[i], &star->at[i + 1])) return false;
     }
     return true;
 }
@@ -122,7 +98,9 @@ static bool keeps_way_open(const struct simplifier *simplifier, const struct sta
     if (simplifier->options.ahead == NULL) return true;
     for (int32_t j = 1; j < star->degree - 1; j++) {
         int32_t i = around(target + j, star->degree);
-        if (!ahead_admits(simplifier, &star->at[target], &star->at[i], &star->at[i + 1], errors[j].max_m)) return false;
+        if (!ahead_admits(simplifier->options.ahead, &star->at[target], &star->at[i], &star->at[i + 1],
+                          errors[j].max_m))
+            return false;
     }
     return true;
 }

@@ -76,9 +76,4 @@ void mesh_measure(struct mesh *mesh, const struct samples *samples);
 /* Triangles around a vertex. */
 int32_t mesh_degree(const struct mesh *mesh, int32_t vertex);
 
-/* Whether (a, b, c) is counter-clockwise with a positive area, also in position codes (span 0: they are not looked
- * at): rounding to codes turns thin triangles over, even where codes are finer than the lattice. */
-bool simplify_positive(const struct code_frame *codes, const struct sample *a, const struct sample *b,
-                       const struct sample *c);
-
 #endif

@@ -109,7 +109,7 @@ static void inserted(void *context, const struct cavity *cavity) {
         const struct scree_vertex *at = &encoder->recording->vertices[v];
         uint32_t i = 0;
         next = encoder->next[v];
-        while (i + 1 < cavity->edge_count && !posts_belong(&encoder->surface, cavity->slots[i], at->x, at->y)) i++;
+        while (i + 1 < cavity->edge_count && !surface_has_post(&encoder->surface, cavity->slots[i], at->x, at->y)) i++;
         put(encoder, v, cavity->slots[i]);
     }
 }
@@ -269,7 +269,8 @@ static enum scree_status start(struct encoder *encoder, int32_t columns, int32_t
     for (uint32_t i = 0; i < recording->removal_count; i++) {
         uint32_t v = recording->removals[i].vertex;
         encoder->removal[v] = i;
-        put(encoder, v, posts_belong(&encoder->surface, 0, recording->vertices[v].x, recording->vertices[v].y) ? 0 : 1);
+        put(encoder, v,
+            surface_has_post(&encoder->surface, 0, recording->vertices[v].x, recording->vertices[v].y) ? 0 : 1);
     }
     return SCREE_OK;
 }

@@ -10,7 +10,7 @@
 
 struct increment_models {
     struct bit_model more[3][POST_CLASSES]; /* whether one more vertex lies in a triangle */
-    struct post_models posts;
+    struct place_models posts;
     struct bit_model ready[2][3][4];
     struct cavity_models cavity;
     struct height_models heights;
@@ -26,7 +26,7 @@ static void start_models(struct bit_model *models, size_t count, int percent) {
 void increment_forget(struct increment *increment) {
     struct increment_models *models = increment->models;
     START(models->more, 15);
-    post_models_start(&models->posts);
+    place_models_start(&models->posts);
     START(models->ready, 70);
     cavity_models_start(&models->cavity);
     height_models_start(&models->heights);
@@ -65,7 +65,7 @@ static bool code_places(struct increment *increment, uint32_t triangle, uint32_t
         memcpy(coded, places, count * sizeof *coded);
     else
         memset(coded, 0, count * sizeof *coded);
-    if (!posts_code(increment->coder, &increment->models->posts, increment->surface, triangle, count, coded))
+    if (!places_code(increment->coder, &increment->models->posts, increment->surface, triangle, count, coded))
         return false;
     for (uint32_t i = 0; i < count; i++) {
         coded[i].triangle = triangle;
@@ -124,7 +124,7 @@ static void hand_out(struct increment *increment, uint32_t gathered) {
         next = pending->next;
         uint32_t i = 0;
         while (i + 1 < cavity->edge_count &&
-               !posts_belong(increment->surface, cavity->slots[i], pending->x, pending->y))
+               !surface_has_post(increment->surface, cavity->slots[i], pending->x, pending->y))
             i++;
         charge(increment, i + 1);
         pending->triangle = cavity->slots[i];

@@ -10,7 +10,7 @@
 #ifndef SCREE_STREAM_INCREMENT_H
 #define SCREE_STREAM_INCREMENT_H
 
-#include "stream/posts.h"
+#include "stream/places.h"
 #include "stream/range_coder.h"
 #include "stream/surface.h"
 

@@ -1,8 +1,9 @@
 #include "stream/surface.h"
 
-#include "stream/posts.h"
-
+#include <stdlib.h>
 #include <string.h>
+
+#define MOST_POSTS 65535
 
 enum scree_status surface_start(struct scree_memory *memory, uint32_t vertex_capacity, uint32_t triangle_capacity,
                                 struct surface *surface, struct scree_error *error) {
@@ -43,8 +44,55 @@ void surface_release(struct scree_memory *memory, struct surface *surface) {
     memset(surface, 0, sizeof *surface);
 }
 
+bool surface_has_post(const struct surface *surface, uint32_t triangle, int32_t x, int32_t y) {
+    const struct surface_triangle *at = &surface->triangles[triangle];
+    const struct scree_vertex post = {x, y, 0}, *from = &surface->vertices[at->vertex[2]];
+    int zeros = 0;
+    for (int i = 2, next = 0; next < 3; i = next++) {
+        const struct scree_vertex *to = &surface->vertices[at->vertex[next]];
+        int64_t left = surface_area2(from, to, &post);
+        if (left < 0 || (left == 0 && !surface_owns(from, to, at->twin[i]))) return false;
+        zeros += left == 0;
+        from = to;
+    }
+    return zeros < 2; /* two: a corner */
+}
+
+static uint32_t common_divisor(uint32_t a, uint32_t b) {
+    while (b != 0) {
+        uint32_t rest = a % b;
+        a = b;
+        b = rest;
+    }
+    return a;
+}
+
+/* Into how many steps posts divide an edge. */
+static inline uint32_t steps_of(const struct surface *surface, const struct scree_vertex *from,
+                                const struct scree_vertex *to) {
+    uint32_t a = (uint32_t)abs(to->x - from->x), b = (uint32_t)abs(to->y - from->y);
+    return (a | b) < SURFACE_DIVISORS ? surface->divisor[a][b] : common_divisor(a, b);
+}
+
+/* Pick's theorem: twice the area is 2 * inside + on the edges - 2. */
+static uint16_t count_posts(const struct surface *surface, uint32_t triangle) {
+    const struct surface_triangle *at = &surface->triangles[triangle];
+    const struct scree_vertex *a = &surface->vertices[at->vertex[0]], *b = &surface->vertices[at->vertex[1]];
+    const struct scree_vertex *c = &surface->vertices[at->vertex[2]];
+    int64_t area2 = surface_area2(a, b, c);
+    if (area2 == 1) return 0;
+    int64_t ab = steps_of(surface, a, b);
+    int64_t bc = steps_of(surface, b, c);
+    int64_t ca = steps_of(surface, c, a);
+    int64_t count = (area2 - (ab + bc + ca) + 2) / 2;
+    count += surface_owns(a, b, at->twin[0]) * (ab - 1);
+    count += surface_owns(b, c, at->twin[1]) * (bc - 1);
+    count += surface_owns(c, a, at->twin[2]) * (ca - 1);
+    return count < MOST_POSTS ? (uint16_t)count : MOST_POSTS;
+}
+
 static void renew(struct surface *surface, uint32_t t) {
-    surface->triangles[t].posts = posts_count(surface, t);
+    surface->triangles[t].posts = count_posts(surface, t);
     surface->triangles[t].first = SURFACE_NONE;
 }
 
@@ -56,7 +104,7 @@ void surface_rectangle(struct surface *surface, int32_t columns, int32_t rows, b
     surface->vertex_count = 4;
     surface->triangle_count = 2;
     for (uint32_t a = 0; a < SURFACE_DIVISORS; a++)
-        for (uint32_t b = 0; b < SURFACE_DIVISORS; b++) surface->divisor[a][b] = (unsigned char)posts_divisor(a, b);
+        for (uint32_t b = 0; b < SURFACE_DIVISORS; b++) surface->divisor[a][b] = (unsigned char)common_divisor(a, b);
     for (uint32_t t = 0; t < 2; t++) {
         memcpy(surface->triangles[t].vertex, corners[rising][t], sizeof corners[rising][t]);
         surface->triangles[t].twin[0] = surface->triangles[t].twin[1] = SURFACE_NONE;

@@ -61,6 +61,17 @@ static inline int64_t surface_area2(const struct scree_vertex *a, const struct s
     return (int64_t)(b->x - a->x) * (c->y - a->y) - (int64_t)(c->x - a->x) * (b->y - a->y);
 }
 
+/* Every post of the rectangle that is not a vertex belongs to exactly one triangle. Those on an edge belong to the side
+ * on which the edge runs north, or east if it is level; those on the border to the only triangle there is. */
+
+/* Whether the posts on an edge belong to the triangle that it is an edge of. */
+static inline bool surface_owns(const struct scree_vertex *from, const struct scree_vertex *to, uint32_t twin) {
+    bool north = to->y > from->y, level = to->y == from->y, east = to->x > from->x, border = twin == SURFACE_NONE;
+    return north | (level & east) | border; /* no branches: none of these can be foreseen */
+}
+
+bool surface_has_post(const struct surface *surface, uint32_t triangle, int32_t x, int32_t y);
+
 /* Room for so many; two triangles over a rectangle of columns x rows steps, whose corners are vertices 0 .. 3
  * (south-west, south-east, north-west, north-east; heights 0), divided from south-west to north-east if `rising`. */
 enum scree_status surface_start(struct scree_memory *memory, uint32_t vertex_capacity, uint32_t triangle_capacity,

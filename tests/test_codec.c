@@ -4,7 +4,7 @@
 #include "lod/tile.h"
 #include "stream/decode.h"
 #include "stream/encode.h"
-#include "stream/posts.h"
+#include "stream/places.h"
 #include "stream/stream_header.h"
 #include "tests/fractal.h"
 #include "tests/mesh_maker.h"
@@ -88,7 +88,7 @@ static void sure_bits_are_nearly_free(void) {
 static void insert_somewhere(struct surface *surface, struct cavity *cavity, uint64_t *state) {
     uint32_t t = 0;
     int32_t x = any_number(state, POST_SIDE + 1), y = any_number(state, POST_SIDE + 1);
-    while (t < surface->triangle_count && !posts_belong(surface, t, x, y)) t++;
+    while (t < surface->triangle_count && !surface_has_post(surface, t, x, y)) t++;
     if (t == surface->triangle_count) return; /* a vertex is there */
     const struct scree_vertex at = {x, y, 0};
     memset(cavity, 0, sizeof *cavity);
@@ -120,7 +120,7 @@ static int misplaced_posts(const struct surface *surface) {
         int count = 0;
         for (int32_t y = 0; y <= POST_SIDE; y++)
             for (int32_t x = 0; x <= POST_SIDE; x++)
-                if (posts_belong(surface, t, x, y)) {
+                if (surface_has_post(surface, t, x, y)) {
                     owners[y][x]++;
                     count++;
                 }
@@ -161,23 +161,23 @@ static void sets_of_posts_come_back(void) {
         for (uint32_t count = 1; count <= posts && count < 8; count++) {
             struct pending places[8] = {{0}}, coded[8];
             struct range_coder coder;
-            struct post_models models;
+            struct place_models models;
             uint32_t found = 0, skip = posts / (count + 1);
             for (int32_t y = 0; y <= side + 1 && found < count; y++)
                 for (int32_t x = 0, skipped = 0; x <= side && found < count && skipped < 100; x++)
-                    if (posts_belong(&surface, 1, x, y) && skipped++ >= (int32_t)(skip % 7))
+                    if (surface_has_post(&surface, 1, x, y) && skipped++ >= (int32_t)(skip % 7))
                         places[found++] = (struct pending){x, y, 1, 0};
             if (found < count) continue;
             memcpy(coded, places, sizeof coded);
             range_coder_write(&memory, &coder);
-            post_models_start(&models);
-            CU_ASSERT(posts_code(&coder, &models, &surface, 1, count, coded));
+            place_models_start(&models);
+            CU_ASSERT(places_code(&coder, &models, &surface, 1, count, coded));
             CU_ASSERT_EQUAL_FATAL(range_coder_finish(&coder, NULL), SCREE_OK);
             unsigned char *written = coder.written;
             range_coder_read(written, coder.written_bytes, &coder);
-            post_models_start(&models);
+            place_models_start(&models);
             memset(coded, 0, sizeof coded);
-            CU_ASSERT(posts_code(&coder, &models, &surface, 1, count, coded));
+            CU_ASSERT(places_code(&coder, &models, &surface, 1, count, coded));
             for (uint32_t i = 0; i < count; i++) CU_ASSERT(coded[i].x == places[i].x && coded[i].y == places[i].y);
             scree_release(&memory, written);
         }

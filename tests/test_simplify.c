@@ -326,18 +326,18 @@ static void codes_are_rounded_to_nearest(void) {
     CU_ASSERT_EQUAL(position_code(4, 10 * 32767), 0);
     const struct code_frame fine = {32767, 0, 0}, coarse = {1 << 18, 0, 0};
     struct sample a = {0, 0, 0}, b = {8, 0, 0}, near = {1, 2, 0}, far = {1, 8, 0};
-    CU_ASSERT_TRUE(simplify_positive(&fine, &a, &b, &near));
-    CU_ASSERT_FALSE(simplify_positive(&coarse, &a, &b, &near)); /* its three codes are on a line */
-    CU_ASSERT_TRUE(simplify_positive(&coarse, &a, &b, &far));
-    CU_ASSERT_FALSE(simplify_positive(&coarse, &a, &far, &b));
-    CU_ASSERT_FALSE(simplify_positive(&fine, &a, &a, &b));
+    CU_ASSERT_TRUE(codes_positive(&fine, &a, &b, &near));
+    CU_ASSERT_FALSE(codes_positive(&coarse, &a, &b, &near)); /* its three codes are on a line */
+    CU_ASSERT_TRUE(codes_positive(&coarse, &a, &b, &far));
+    CU_ASSERT_FALSE(codes_positive(&coarse, &a, &far, &b));
+    CU_ASSERT_FALSE(codes_positive(&fine, &a, &a, &b));
 
     /* Of a tile of 2048 steps: codes are sixteen times finer than the lattice, and turn this needle over. */
     const struct code_frame finer = {2048, 0, 0}, none = {0};
     const struct sample low = {1024, 256, 0}, middle = {1039, 273, 0}, high = {1068, 306, 0}, beside = {1068, 307, 0};
-    CU_ASSERT_TRUE(simplify_positive(&none, &low, &middle, &high));
-    CU_ASSERT_FALSE(simplify_positive(&finer, &low, &middle, &high));
-    CU_ASSERT_TRUE(simplify_positive(&finer, &low, &middle, &beside));
+    CU_ASSERT_TRUE(codes_positive(&none, &low, &middle, &high));
+    CU_ASSERT_FALSE(codes_positive(&finer, &low, &middle, &high));
+    CU_ASSERT_TRUE(codes_positive(&finer, &low, &middle, &beside));
 }
 
 static int32_t flat_in_codes(const struct mesh *mesh, const struct code_frame *frame) {

@@ -419,8 +419,8 @@ static void coarse_codes_leave_positive_triangles(void) {
     for (int32_t t = 0; t < tile.mesh.triangle_count; t++) {
         const int32_t *corner = tile.mesh.triangles[t].vertex;
         if (corner[0] == MESH_NONE) continue;
-        CU_ASSERT_TRUE(simplify_positive(&frame, &tile.mesh.vertices[corner[0]].at, &tile.mesh.vertices[corner[1]].at,
-                                         &tile.mesh.vertices[corner[2]].at));
+        CU_ASSERT_TRUE(codes_positive(&frame, &tile.mesh.vertices[corner[0]].at, &tile.mesh.vertices[corner[1]].at,
+                                      &tile.mesh.vertices[corner[2]].at));
     }
     CU_ASSERT(tile.mesh.live_vertices > 100);
     tile_release(&east);

@@ -1,10 +1,8 @@
-#include "stream/posts.h"
+#include "stream/places.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-#define SMALL_BOX  256 /* posts of a bounding box that are looked at one by one */
-#define MOST_POSTS 65535
+#define SMALL_BOX 256 /* posts of a bounding box that are looked at one by one */
 
 /* A triangle as three edges: edge i runs from corner i, and a point lies left of it by (dx * (y - y0) - dy * (x - x0)),
  * twice the area of the triangle that they make. */
@@ -12,12 +10,6 @@ struct edges {
     int64_t x[3], y[3], dx[3], dy[3];
     bool owned[3];
 };
-
-/* Whether the posts on an edge belong to the triangle that it is an edge of. */
-static inline bool is_owned(const struct scree_vertex *from, const struct scree_vertex *to, uint32_t twin) {
-    bool north = to->y > from->y, level = to->y == from->y, east = to->x > from->x, border = twin == SURFACE_NONE;
-    return north | (level & east) | border; /* no branches: none of these can be foreseen */
-}
 
 static void edges_of(const struct surface *surface, uint32_t t, struct edges *edges) {
     const struct surface_triangle *triangle = &surface->triangles[t];
@@ -28,59 +20,12 @@ static void edges_of(const struct surface *surface, uint32_t t, struct edges *ed
         edges->y[i] = a->y;
         edges->dx[i] = (int64_t)b->x - a->x;
         edges->dy[i] = (int64_t)b->y - a->y;
-        edges->owned[i] = is_owned(a, b, triangle->twin[i]);
+        edges->owned[i] = surface_owns(a, b, triangle->twin[i]);
     }
 }
 
 static inline int64_t left_of(const struct edges *edges, int i, int64_t x, int64_t y) {
     return edges->dx[i] * (y - edges->y[i]) - edges->dy[i] * (x - edges->x[i]);
-}
-
-bool posts_belong(const struct surface *surface, uint32_t triangle, int32_t x, int32_t y) {
-    const struct surface_triangle *at = &surface->triangles[triangle];
-    const struct scree_vertex post = {x, y, 0}, *from = &surface->vertices[at->vertex[2]];
-    int zeros = 0;
-    for (int i = 2, next = 0; next < 3; i = next++) {
-        const struct scree_vertex *to = &surface->vertices[at->vertex[next]];
-        int64_t left = surface_area2(from, to, &post);
-        if (left < 0 || (left == 0 && !is_owned(from, to, at->twin[i]))) return false;
-        zeros += left == 0;
-        from = to;
-    }
-    return zeros < 2; /* two: a corner */
-}
-
-uint32_t posts_divisor(uint32_t a, uint32_t b) {
-    while (b != 0) {
-        uint32_t rest = a % b;
-        a = b;
-        b = rest;
-    }
-    return a;
-}
-
-/* Into how many steps posts divide an edge. */
-static inline uint32_t steps_of(const struct surface *surface, const struct scree_vertex *from,
-                                const struct scree_vertex *to) {
-    uint32_t a = (uint32_t)abs(to->x - from->x), b = (uint32_t)abs(to->y - from->y);
-    return (a | b) < SURFACE_DIVISORS ? surface->divisor[a][b] : posts_divisor(a, b);
-}
-
-/* Pick's theorem: twice the area is 2 * inside + on the edges - 2. */
-uint16_t posts_count(const struct surface *surface, uint32_t triangle) {
-    const struct surface_triangle *at = &surface->triangles[triangle];
-    const struct scree_vertex *a = &surface->vertices[at->vertex[0]], *b = &surface->vertices[at->vertex[1]];
-    const struct scree_vertex *c = &surface->vertices[at->vertex[2]];
-    int64_t area2 = surface_area2(a, b, c);
-    if (area2 == 1) return 0;
-    int64_t ab = steps_of(surface, a, b);
-    int64_t bc = steps_of(surface, b, c);
-    int64_t ca = steps_of(surface, c, a);
-    int64_t count = (area2 - (ab + bc + ca) + 2) / 2;
-    count += is_owned(a, b, at->twin[0]) * (ab - 1);
-    count += is_owned(b, c, at->twin[1]) * (bc - 1);
-    count += is_owned(c, a, at->twin[2]) * (ca - 1);
-    return count < MOST_POSTS ? (uint16_t)count : MOST_POSTS;
 }
 
 /* ---- small triangles: the posts are counted through ---- */
@@ -213,7 +158,7 @@ static uint64_t code_place(struct range_coder *coder, struct bit_model models[8]
     return start + code_large_uniform(coder, (eighth + 1) * count / 8 - start, value - start);
 }
 
-static bool code_far(struct range_coder *coder, struct post_models *models, const struct edges *edges,
+static bool code_far(struct range_coder *coder, struct place_models *models, const struct edges *edges,
                      const struct box *box, struct pending *place) {
     int64_t first, last, rows = box->y_last - box->y_first + 1;
     int64_t row =
@@ -231,12 +176,12 @@ static bool is_after(const struct pending *place, const struct pending *last) {
     return place->y > last->y || (place->y == last->y && place->x > last->x);
 }
 
-void post_models_start(struct post_models *models) {
+void place_models_start(struct place_models *models) {
     for (int i = 0; i < 8; i++) models->row[i] = models->column[i] = bit_model(50);
 }
 
-bool posts_code(struct range_coder *coder, struct post_models *models, const struct surface *surface, uint32_t triangle,
-                uint32_t count, struct pending *places) {
+bool places_code(struct range_coder *coder, struct place_models *models, const struct surface *surface,
+                 uint32_t triangle, uint32_t count, struct pending *places) {
     struct edges edges;
     edges_of(surface, triangle, &edges);
     struct box box = box_of(&edges);
