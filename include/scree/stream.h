@@ -29,11 +29,12 @@ struct scree_rung {
     int32_t rung;          /* L of the ladder; grows with detail */
     uint32_t vertex_count; /* of the mesh at this rung */
     uint32_t triangle_count;
-    float mmqe_m2;         /* mean minimum quadric error */
-    float svo_m;           /* smallest visible object: its square root, made monotone */
-    float max_error_m;     /* largest vertical distance of a post from the mesh, as measured */
-    uint32_t size_bytes;   /* of the block */
-    uint32_t checksum;     /* CRC-32 of the block */
+    float mmqe_m2;       /* mean minimum quadric error */
+    float svo_m;         /* smallest visible object: its square root, made monotone */
+    float max_error_m;   /* largest vertical distance from the mesh, as measured: at the finest zoom of all posts, above
+                            it of the lowest and the highest post of each of the tile's 256 x 256 cells */
+    uint32_t size_bytes; /* of the block */
+    uint32_t checksum;   /* CRC-32 of the block */
     uint64_t offset_bytes; /* of the block in the file; blocks follow one another */
 };
 
