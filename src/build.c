@@ -113,8 +113,9 @@ static enum scree_status finish_streams(const struct build_options *options, str
     double tolerance_m[MOST_RUNGS];
     for (int zoom = options->min_zoom; zoom <= build->max_zoom; zoom++) {
         const struct pyramid_zoom *level = &build->pyramid.zooms[zoom];
-        build->streams[zoom] = (struct stream_zoom){.tiles = level->tiles.ids};
-        for (uint32_t i = 0; i < level->tiles.count; i++) stream_zoom_add(&build->streams[zoom], &level->streams[i]);
+        build->streams[zoom] = (struct stream_zoom){.tiles = level->stream_tiles.ids};
+        for (uint32_t i = 0; i < level->stream_tiles.count; i++)
+            stream_zoom_add(&build->streams[zoom], &level->streams[i]);
     }
     struct stream_manifest manifest = {.lattice = &build->lattice,
                                        .min_zoom = options->min_zoom,

@@ -64,19 +64,48 @@ static enum scree_status list_tiles(const struct pyramid_options *options, struc
     level->tiles.count = kept;
     level->statistics =
         scree_allocate(&pyramid->memory, kept, sizeof *level->statistics, "figures of all tiles", error);
-    level->streams = scree_allocate(&pyramid->memory, kept, sizeof *level->streams, "figures of all tiles", error);
-    return level->statistics != NULL && level->streams != NULL ? SCREE_OK : SCREE_E_MEMORY;
+    return level->statistics != NULL ? SCREE_OK : SCREE_E_MEMORY;
 }
 
 /* A root may be on the list without being touched by data. */
-static bool touched(const struct work *work, struct tile_id id) {
+static bool touched(const struct pyramid_options *options, struct tile_id id) {
     struct lattice_window windows[2];
-    int window_count = raster_windows(work->options->raster, windows);
+    int window_count = raster_windows(options->raster, windows);
     for (int i = 0; i < window_count; i++) {
-        struct tile_range range = lattice_tiles_touching(work->options->lattice, id.zoom, windows[i]);
+        struct tile_range range = lattice_tiles_touching(options->lattice, id.zoom, windows[i]);
         if (id.x >= range.x_first && id.x <= range.x_last && id.y >= range.y_first && id.y <= range.y_last) return true;
     }
     return false;
+}
+
+static struct tile_id child_of(struct tile_id id, int child) {
+    return (struct tile_id){id.zoom + 1, 2 * id.x + (uint32_t)(child % 2), 2 * id.y + (uint32_t)(child / 2)};
+}
+
+static bool in_lattice(const struct pyramid_options *options, struct tile_id id) {
+    return lattice_tile_window(options->lattice, id).columns > 0;
+}
+
+/* All roots, and all children of tiles that data touch; the zoom above is listed. */
+static enum scree_status list_streams(const struct pyramid_options *options, struct pyramid *pyramid, int zoom,
+                                      struct scree_error *error) {
+    struct pyramid_zoom *level = &pyramid->zooms[zoom];
+    const struct tile_list *above = zoom > 0 ? &pyramid->zooms[zoom - 1].tiles : &level->tiles;
+    enum scree_status status = SCREE_OK;
+    for (uint32_t i = 0; i < above->count && status == SCREE_OK; i++) {
+        if (zoom == 0) {
+            status = tile_list_add(&pyramid->memory, &level->stream_tiles, above->ids[i], error);
+            continue;
+        }
+        for (int child = 0; child < 4 && touched(options, above->ids[i]) && status == SCREE_OK; child++)
+            if (in_lattice(options, child_of(above->ids[i], child)))
+                status = tile_list_add(&pyramid->memory, &level->stream_tiles, child_of(above->ids[i], child), error);
+    }
+    if (status != SCREE_OK) return status;
+    tile_list_sort(&level->stream_tiles);
+    level->streams = scree_allocate(&pyramid->memory, level->stream_tiles.count, sizeof *level->streams,
+                                    "figures of all tiles", error);
+    return level->streams != NULL ? SCREE_OK : SCREE_E_MEMORY;
 }
 
 /* ---- tiles ---- */
@@ -102,6 +131,13 @@ static bool is_written(const struct work *work, struct tile_id id) {
     return id.zoom >= work->options->min_zoom && id.zoom <= work->options->max_zoom;
 }
 
+/* Writes the stream of a tile that has come to its coarsest rung. */
+static enum scree_status finish_stream(struct work *work, struct tile_walk *walk, struct scree_error *error) {
+    struct pyramid_zoom *level = &work->pyramid->zooms[walk->id.zoom];
+    uint32_t index = tile_list_find(&level->stream_tiles, walk->id);
+    return tile_build_write_stream(&work->plan, walk, work->options->stream, &level->streams[index], error);
+}
+
 /* Writes what is wanted of a tile that has come to the rung of its zoom, takes it on and hands it up. */
 static enum scree_status finish_tile(struct work *work, struct tile_walk *walk, struct coarse_tile **coarse,
                                      struct scree_error *error) {
@@ -112,8 +148,7 @@ static enum scree_status finish_tile(struct work *work, struct tile_walk *walk, 
     if (is_written(work, walk->id) && options->terrain != NULL)
         status = tile_build_write(&work->plan, walk, options->terrain, &level->statistics[index], error);
     if (status == SCREE_OK) status = tile_build_hand_up(&work->plan, walk, coarse, error);
-    if (status == SCREE_OK && walk->is_recorded)
-        status = tile_build_write_stream(&work->plan, walk, options->stream, &level->streams[index], error);
+    if (status == SCREE_OK && walk->is_recorded) status = finish_stream(work, walk, error);
     tile_walk_release(walk);
     return status;
 }
@@ -142,23 +177,15 @@ static enum scree_status finest_tile(struct worker *worker, struct tile_id id, s
     return status;
 }
 
-static struct tile_id child_of(struct tile_id id, int child) {
-    return (struct tile_id){id.zoom + 1, 2 * id.x + (uint32_t)(child % 2), 2 * id.y + (uint32_t)(child / 2)};
-}
-
-static bool in_lattice(const struct work *work, struct tile_id id) {
-    return lattice_tile_window(work->options->lattice, id).columns > 0;
-}
-
-/* A tile that no data touch; only roots are written. */
+/* A tile that no data touch: a stream for its parent's sake, and static only as a root. */
 static enum scree_status level_tile(struct work *work, struct tile_id id, struct scree_memory *memory,
                                     struct coarse_tile **coarse, struct scree_error *error) {
     struct tile_walk walk;
-    bool record = id.zoom == 0 && is_recorded(work, id);
-    enum scree_status status = tile_build_level(&work->plan, id, record, memory, &walk, error);
+    enum scree_status status = tile_build_level(&work->plan, id, is_recorded(work, id), memory, &walk, error);
     if (status != SCREE_OK) return status;
     if (id.zoom == 0) return finish_tile(work, &walk, coarse, error);
     status = tile_build_hand_up(&work->plan, &walk, coarse, error);
+    if (status == SCREE_OK && walk.is_recorded) status = finish_stream(work, &walk, error);
     tile_walk_release(&walk);
     return status;
 }
@@ -170,10 +197,10 @@ static enum scree_status subtree(struct worker *worker, struct tile_id id, struc
     enum scree_status status = SCREE_OK;
     struct coarse_tile *children[4] = {NULL, NULL, NULL, NULL};
     if (stopped(work)) return scree_fail(error, SCREE_E_INTERRUPTED, "interrupted");
-    if (!touched(work, id)) return level_tile(work, id, memory, coarse, error);
+    if (!touched(work->options, id)) return level_tile(work, id, memory, coarse, error);
     if (id.zoom == work->options->lattice->finest_zoom) return finest_tile(worker, id, memory, coarse, error);
     for (int child = 0; child < 4 && status == SCREE_OK; child++)
-        if (in_lattice(work, child_of(id, child)))
+        if (in_lattice(work->options, child_of(id, child)))
             status = subtree(worker, child_of(id, child), memory, &children[child], error);
     if (status == SCREE_OK) status = parent_from(work, id, children, memory, coarse, error);
     for (int child = 0; child < 4; child++) coarse_tile_free(memory, children[child]);
@@ -194,7 +221,7 @@ static enum scree_status upper_tile(struct work *work, struct node *node, struct
     enum scree_status status = SCREE_OK;
     for (int child = 0; child < 4 && status == SCREE_OK; child++) {
         struct tile_id id = child_of(node->id, child);
-        if (!in_lattice(work, id)) continue;
+        if (!in_lattice(work->options, id)) continue;
         owners[child] = node_of(work, id);
         if (owners[child] != NULL)
             children[child] = owners[child]->coarse;
@@ -302,7 +329,7 @@ static enum scree_status level_roots(struct work *work, struct scree_error *erro
     enum scree_status status = SCREE_OK;
     for (uint32_t i = 0; work->job_zoom > 0 && i < work->pyramid->zooms[0].tiles.count && status == SCREE_OK; i++) {
         struct node *node = &work->nodes[0][i];
-        if (!touched(work, node->id)) status = level_tile(work, node->id, &node->memory, &node->coarse, error);
+        if (!touched(work->options, node->id)) status = level_tile(work, node->id, &node->memory, &node->coarse, error);
     }
     return status;
 }
@@ -351,6 +378,8 @@ enum scree_status pyramid_build(const struct pyramid_options *options, struct py
     if (pthread_mutex_init(&work.lock, NULL) != 0) return scree_fail(error, SCREE_E_LIMIT, "no lock can be made");
     for (int zoom = 0; zoom <= options->lattice->finest_zoom && status == SCREE_OK; zoom++)
         status = list_tiles(options, pyramid, zoom, error);
+    for (int zoom = 0; zoom <= options->lattice->finest_zoom && status == SCREE_OK; zoom++)
+        status = list_streams(options, pyramid, zoom, error);
     if (status == SCREE_OK) status = make_nodes(&work, error);
     if (status == SCREE_OK) status = level_roots(&work, error);
     if (status == SCREE_OK) status = run_workers(&work, error);
@@ -366,6 +395,7 @@ void pyramid_free(struct pyramid *pyramid) {
     for (int zoom = 0; zoom <= MAX_ZOOM; zoom++) {
         scree_release(&pyramid->memory, pyramid->zooms[zoom].streams);
         scree_release(&pyramid->memory, pyramid->zooms[zoom].statistics);
+        tile_list_free(&pyramid->memory, &pyramid->zooms[zoom].stream_tiles);
         tile_list_free(&pyramid->memory, &pyramid->zooms[zoom].tiles);
     }
 }

@@ -15,11 +15,12 @@
 #include <scree/error.h>
 #include <signal.h>
 
-/* The tiles of a zoom that the data touch (and, at zoom 0, every root). */
+/* The tiles of a zoom that the data touch (and, at zoom 0, every root). Streams also have the tiles beside these that
+ * share a parent with them: a viewer that replaces a tile by its children shall find all of them. */
 struct pyramid_zoom {
-    struct tile_list tiles;
+    struct tile_list tiles, stream_tiles;
     struct terrain_tile_statistics *statistics; /* one a tile, filled by the build */
-    struct stream_tile_figures *streams;        /* the same */
+    struct stream_tile_figures *streams;        /* one a stream, filled by the build */
 };
 
 struct pyramid_options {

@@ -195,8 +195,10 @@ static int check_family(struct scree_memory *memory, const struct stream_set *se
     const struct scree_stream_header *header = scree_player_header(parent);
     CU_ASSERT_EQUAL(header->rungs[header->rung_count - 1].rung, 4 * id.zoom);
     CU_ASSERT_EQUAL(header->rungs[0].rung, 4 * (id.zoom - 1));
+    int wanted = 0;
     for (uint32_t i = 0; i < 4; i++) {
         struct tile_id child_id = {id.zoom + 1, 2 * id.x + i % 2, 2 * id.y + i / 2};
+        wanted += lattice_tile_window(&set->info.lattice, child_id).columns > 0;
         if (tile_list_find(&set->tiles[id.zoom + 1], child_id) == TILE_NOT_LISTED) continue;
         CU_ASSERT_EQUAL_FATAL(stream_set_play(memory, set, child_id, &child, NULL, &error), SCREE_OK);
         CU_ASSERT_EQUAL(scree_player_seek_rung(child, 0), SCREE_OK);
@@ -216,6 +218,7 @@ static int check_family(struct scree_memory *memory, const struct stream_set *se
         scree_player_free(child);
         children++;
     }
+    CU_ASSERT(children == 0 || children == wanted); /* no quarter is left open */
     scree_player_free(parent);
     return children;
 }
