@@ -42,6 +42,7 @@ enum scree_status build_prepare(const struct build_options *options, struct buil
     double lowest_m = fmin(summary->height_min_m - summary->relief_margin_m, outside_m);
     double highest_m = fmax(summary->height_max_m + summary->relief_margin_m, outside_m);
     ladder.relief_m = highest_m - lowest_m;
+    if (options->raster.profile == PROFILE_GEODETIC) ladder.wall_m = fmax(highest_m - outside_m, outside_m - lowest_m);
     ladder.largest_height_m = fmax(fabs(lowest_m), fabs(highest_m));
     if ((status = ladder_make(&build->lattice, &ladder, &build->ladder, error)) != SCREE_OK) return status;
     return raster_place(build->raster, &build->lattice, error);

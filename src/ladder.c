@@ -16,6 +16,17 @@ static double power_of_two_above(double value) {
     return exp2(ceil(log2(value)));
 }
 
+/* The least step in which the relief that a tile of the zoom may have can be written. */
+static double relief_step_m(const struct lattice *lattice, const struct ladder_options *options, double tolerance_m,
+                            int zoom) {
+    double east_m, north_m;
+    lattice_steps_m(lattice, (double)(lattice->rows - 1) / 2, &east_m, &north_m);
+    double width_m = (double)lattice_tile_span(lattice, zoom) * fmax(east_m, north_m);
+    double relief_m = fmax(fmin(options->relief_m, STEEPEST_TILE * width_m), options->wall_m);
+    relief_m = fmax(relief_m, tolerance_m / HEIGHT_CODES);
+    return power_of_two_above(relief_m / HEIGHT_CODES);
+}
+
 static enum scree_status set_tolerances(const struct lattice *lattice, const struct ladder_options *options,
                                         struct ladder *ladder, struct scree_error *error) {
     double root_m = options->root_error_m;
@@ -26,7 +37,9 @@ static enum scree_status set_tolerances(const struct lattice *lattice, const str
         root_m = DEFAULT_TOLERANCE_SHARE * fmax(east_m, north_m) * exp2(lattice->finest_zoom);
     }
     for (int zoom = 0; zoom <= lattice->finest_zoom; zoom++) {
-        ladder->tolerance_m[zoom] = options->error_at_m[zoom] > 0 ? options->error_at_m[zoom] : ldexp(root_m, -zoom);
+        double tolerance_m = ldexp(root_m, -zoom);
+        if (options->root_error_m <= 0) tolerance_m = fmax(tolerance_m, relief_step_m(lattice, options, 0, zoom));
+        ladder->tolerance_m[zoom] = options->error_at_m[zoom] > 0 ? options->error_at_m[zoom] : tolerance_m;
         if (zoom > 0 && ladder->tolerance_m[zoom] > ladder->tolerance_m[zoom - 1])
             return scree_fail(error, SCREE_E_ARGUMENT,
                               "the tolerance of zoom %d (%g m) is larger than that of zoom %d (%g m): give --error-at "
@@ -34,16 +47,6 @@ static enum scree_status set_tolerances(const struct lattice *lattice, const str
                               zoom, ladder->tolerance_m[zoom], zoom - 1, ladder->tolerance_m[zoom - 1]);
     }
     return SCREE_OK;
-}
-
-/* The least step in which the relief that a tile of the zoom may have can be written. */
-static double relief_step_m(const struct lattice *lattice, const struct ladder_options *options, double tolerance_m,
-                            int zoom) {
-    double east_m, north_m;
-    lattice_steps_m(lattice, (double)(lattice->rows - 1) / 2, &east_m, &north_m);
-    double width_m = (double)lattice_tile_span(lattice, zoom) * fmax(east_m, north_m);
-    double relief_m = fmax(fmin(options->relief_m, STEEPEST_TILE * width_m), tolerance_m / HEIGHT_CODES);
-    return power_of_two_above(relief_m / HEIGHT_CODES);
 }
 
 /* Fine against the tolerance, coarse enough for the relief. */

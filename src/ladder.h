@@ -26,9 +26,11 @@
 #define MAX_FINEST_OCTAVES     8
 
 struct ladder_options {
-    double root_error_m;             /* tolerance of zoom 0, halving with each zoom; 0: the default */
+    double root_error_m;             /* tolerance of zoom 0, halving with each zoom; 0: the default, which stops where
+                                        heights cannot be written more finely */
     double error_at_m[MAX_ZOOM + 1]; /* overrules single zooms; 0: not given */
     double relief_m;                 /* of the whole source */
+    double wall_m;                   /* how far it stands above or below what surrounds it: one tile may have it all */
     double largest_height_m;         /* absolute */
     int finest_octaves;              /* how far the finest zoom goes on below its tolerance */
     bool lossless;                   /* the finest rung is the full grid */
