@@ -312,6 +312,18 @@ failed:
     return status;
 }
 
+enum scree_status tile_lock(struct tile *tile, int64_t locked_step, struct scree_error *error) {
+    const struct code_frame codes = tile->simplifier.options.codes;
+    const struct samples samples = tile->simplifier.samples; /* with its position rounding */
+    simplifier_release(&tile->simplifier);
+    tile->geometry.locked_step = locked_step;
+    enum scree_status status = start_simplifier(tile, error);
+    if (status != SCREE_OK) return status;
+    tile->simplifier.options.codes = codes;
+    tile->simplifier.samples = samples;
+    return SCREE_OK;
+}
+
 /* ---- any tile ---- */
 
 /* A code is off by half a step at the most. */

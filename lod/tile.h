@@ -66,6 +66,10 @@ enum scree_status tile_from_posts(struct scree_memory *memory, const struct tile
 enum scree_status tile_from_level(struct scree_memory *memory, const struct tile_geometry *geometry, int32_t step,
                                   double height_m, struct tile *tile, struct scree_error *error);
 
+/* From now on vertices at multiples of `locked_step`, and no others, are locked (see simplify_options). The tile looks
+ * at no rungs to come and is not observed. */
+enum scree_status tile_lock(struct tile *tile, int64_t locked_step, struct scree_error *error);
+
 /* Children in the order south-west, south-east, north-west, north-east; NULL outside of the lattice. They stay the
  * caller's. */
 enum scree_status tile_from_children(struct scree_memory *memory, const struct tile_geometry *geometry,

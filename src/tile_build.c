@@ -186,9 +186,14 @@ enum scree_status tile_build_level(const struct tile_plan *plan, struct tile_id 
     float east_drop_m[TILE_CELLS + 1];
     struct tile_geometry geometry = geometry_of(plan, id, east_drop_m);
     int32_t step = level_step(plan, id, &geometry);
+    int64_t locked_step = geometry.locked_step, half = lattice_tile_span(plan->lattice, id.zoom) / 2;
+    bool has_children = id.zoom < plan->lattice->finest_zoom;
     begin(walk, id);
+    /* like its neighbours it is, at its finest rung, what four children would be: their corners are there */
+    if (has_children && (locked_step == 0 || half < locked_step)) geometry.locked_step = half;
     enum scree_status status = tile_from_level(memory, &geometry, step, plan->nodata_height_m, &walk->tile, error);
     if (status == SCREE_OK) status = take_to(plan, walk, walk->rung, error);
+    if (status == SCREE_OK) status = tile_lock(&walk->tile, locked_step, error);
     if (status == SCREE_OK) walk->max_error_m = tile_max_error_m(&walk->tile);
     if (status == SCREE_OK) status = start_recording(walk, record, walk->max_error_m, error);
     if (status != SCREE_OK) tile_walk_release(walk);
