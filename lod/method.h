@@ -46,4 +46,35 @@ struct method_mesh {
 /* Fine on an empty mesh, and twice. */
 void method_mesh_release(struct scree_memory *memory, struct method_mesh *mesh);
 
+/* ---- what all methods need ---- */
+
+static inline float method_post_m(const struct method_tile *tile, int32_t column, int32_t row) {
+    return tile->heights_m[(int64_t)row * tile->stride + column];
+}
+
+/* Lattice steps that the tile covers. */
+static inline int32_t method_width(const struct method_tile *tile) {
+    return tile->columns * tile->cell_span;
+}
+static inline int32_t method_height(const struct method_tile *tile) {
+    return tile->rows * tile->cell_span;
+}
+
+/* The drop of the ellipsoid at a place, below the tangent plane at the tile's middle. */
+static inline double method_drop_m(const struct method_tile *tile, double x, double y) {
+    double east = x - 0.5 * method_width(tile), north = y - 0.5 * method_height(tile);
+    return east * east * tile->east_drop_m + north * north * tile->north_drop_m;
+}
+
+/* What every method may count on; SCREE_E_ARGUMENT tells what is wrong. At least one cell each way, spans up to 2^30
+ * steps, finite heights, lines from corner to corner with growing positions that agree about the corners. */
+enum scree_status method_tile_check(const struct method_tile *tile, struct scree_error *error);
+
+/* The vertices of all four lines once, counter-clockwise from the south-western corner: `*ring` belongs to `memory`.
+ * `corners`, if not NULL, gets the place in the ring of the south-western, south-eastern, north-eastern and
+ * north-western one. */
+enum scree_status method_ring_new(struct scree_memory *memory, const struct method_tile *tile,
+                                  struct method_vertex **ring, uint32_t *count, uint32_t corners[4],
+                                  struct scree_error *error);
+
 #endif
