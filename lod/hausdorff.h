@@ -30,7 +30,7 @@ struct hausdorff {
     uint32_t sample_count; /* of both */
 };
 
-/* Files a surface, whose arrays must outlive it, and scatters its samples. SCREE_E_ARGUMENT as distance_index_make. On
+/* Files a surface, whose arrays must outlive it, and scatters its samples. SCREE_E_ARGUMENT as space_mesh_check. On
  * failure nothing is left to release. */
 enum scree_status hausdorff_prepare(struct scree_memory *memory, const struct space_mesh *mesh,
                                     const struct hausdorff_options *options, struct hausdorff_surface *prepared,

@@ -52,9 +52,8 @@ double triangle_distance_m(struct vector3 point, struct vector3 a, struct vector
 
 /* ---- the grid ---- */
 
-static enum scree_status check(const struct space_mesh *mesh, struct scree_error *error) {
-    if (mesh->triangle_count == 0)
-        return scree_fail(error, SCREE_E_ARGUMENT, "there is no distance from a mesh without triangles");
+enum scree_status space_mesh_check(const struct space_mesh *mesh, struct scree_error *error) {
+    if (mesh->triangle_count == 0) return scree_fail(error, SCREE_E_ARGUMENT, "the mesh has no triangles");
     for (uint32_t i = 0; i < mesh->vertex_count; i++) {
         struct vector3 v = mesh->vertices_m[i];
         if (!isfinite(v.x) || !isfinite(v.y) || !isfinite(v.z))
@@ -150,7 +149,7 @@ static uint64_t file_triangles(struct distance_index *index) {
 enum scree_status distance_index_make(struct scree_memory *memory, const struct space_mesh *mesh,
                                       struct distance_index *index, struct scree_error *error) {
     memset(index, 0, sizeof *index);
-    enum scree_status status = check(mesh, error);
+    enum scree_status status = space_mesh_check(mesh, error);
     if (status != SCREE_OK) return status;
     index->mesh = *mesh;
     lay_grid(index);

@@ -17,6 +17,9 @@ struct space_mesh {
     const uint32_t *corners; /* 3 a triangle */
 };
 
+/* SCREE_E_ARGUMENT: no triangle, a corner that names no vertex, or a coordinate that is not finite. */
+enum scree_status space_mesh_check(const struct space_mesh *mesh, struct scree_error *error);
+
 struct distance_index {
     struct space_mesh mesh; /* its arrays are the caller's */
     double x_m, y_m;        /* of the grid's first corner */
@@ -28,8 +31,8 @@ struct distance_index {
     uint32_t question;
 };
 
-/* Files the triangles of a surface, which must outlive the index. SCREE_E_ARGUMENT: no triangle, a corner that names
- * no vertex, or a coordinate that is not finite. On failure nothing is left to release. */
+/* Files the triangles of a surface, which must outlive the index. SCREE_E_ARGUMENT as space_mesh_check. On failure
+ * nothing is left to release. */
 enum scree_status distance_index_make(struct scree_memory *memory, const struct space_mesh *mesh,
                                       struct distance_index *index, struct scree_error *error);
 void distance_index_release(struct scree_memory *memory, struct distance_index *index);
