@@ -42,10 +42,14 @@ static int32_t last_target(const struct star *star) {
     return star->open || first_inside ? 0 : 1;
 }
 
-static void take_out(struct mesh *mesh, struct star *star, unsigned char *taken) {
-    for (int32_t i = 0; i <= star->degree; i++) taken[star->ring[i]] = 1; /* as neighbours of one that is gone */
+void strip_vertex(struct mesh *mesh, struct star *star) {
     while (star->degree > (star->open ? 2 : 3) && cut_ear(mesh, star)) continue;
     mesh_collapse(mesh, star, last_target(star));
+}
+
+static void take_out(struct mesh *mesh, struct star *star, unsigned char *taken) {
+    for (int32_t i = 0; i <= star->degree; i++) taken[star->ring[i]] = 1; /* as neighbours of one that is gone */
+    strip_vertex(mesh, star);
 }
 
 int32_t strip_layer(struct mesh *mesh, unsigned char *taken, const struct simplify_observer *observer) {

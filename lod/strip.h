@@ -10,4 +10,8 @@
  * nothing but the corners is left. */
 int32_t strip_layer(struct mesh *mesh, unsigned char *taken, const struct simplify_observer *observer);
 
+/* Removes the vertex of a star, which is no corner of the rectangle, and fills the hole by ears of good shape. The star
+ * is used up. */
+void strip_vertex(struct mesh *mesh, struct star *star);
+
 #endif

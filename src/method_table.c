@@ -2,6 +2,7 @@
 #include "src/methods.h"
 
 #include "lod/method_greedy.h"
+#include "lod/method_quadtree.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -21,11 +22,26 @@ static enum scree_status run_greedy(struct scree_memory *memory, const struct me
     return method_greedy(memory, tile, &options, mesh, error);
 }
 
+/* ---- quadtree ---- */
+
+static const struct method_option quadtree_options[] = {
+    {"q_k", "largest sum of curvature of a node, no unit; default: what q_e asks for", 0, 1e9, NAN, 0, false},
+    {"q_e", "vertical error aimed at, not held, metres; default: the zoom's --error", 0, 1e7, 0, 1, false},
+};
+
+static enum scree_status run_quadtree(struct scree_memory *memory, const struct method_tile *tile,
+                                      const double values[], struct method_mesh *mesh, struct scree_error *error) {
+    const double threshold = isnan(values[0]) ? method_quadtree_threshold(tile, values[1]) : values[0];
+    return method_quadtree(memory, tile, &(struct method_quadtree_options){.threshold = threshold}, mesh, error);
+}
+
 /* ---- the table ---- */
 
 /* name, what it is good for, its options, contradictions, run */
 const struct method method_table[] = {
     {"greedy", "Garland and Heckbert's insertion: fast, keeps to a vertical error", OPTIONS(greedy_options), NULL,
      run_greedy},
+    {"quadtree", "Cifuentes' quadtree of leaves with little curvature: by far the fastest", OPTIONS(quadtree_options),
+     NULL, run_quadtree},
     {NULL, NULL, 0, NULL, NULL, NULL},
 };
