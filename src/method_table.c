@@ -2,7 +2,11 @@
 #include "src/methods.h"
 
 #include "lod/method_greedy.h"
+#include "lod/method_grid.h"
+#include "lod/method_hierarchy.h"
 #include "lod/method_quadtree.h"
+#include "lod/method_random.h"
+#include "lod/method_wlop.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -35,6 +39,96 @@ static enum scree_status run_quadtree(struct scree_memory *memory, const struct 
     return method_quadtree(memory, tile, &(struct method_quadtree_options){.threshold = threshold}, mesh, error);
 }
 
+/* ---- point sets ---- */
+
+/* What all four have behind their own options. */
+#define OPTION_P_E \
+    { "p_e", "error of feature lines in space, metres; default: the zoom's --error", 0, 1e7, 0, 1, false }
+#define OPTION_P_M \
+    { "p_m", "edges that a feature line has at least; default 5", 1, 1e6, FEATURE_EDGES, 0, true }
+#define OPTION_ANGLE \
+    { "angle", "of a feature edge, degrees; default 60; 180: none is", 1, 180, FEATURE_ANGLE_DEG, 0, false }
+#define OPTION_CUBE \
+    { "cube", "1: measure the angle in a tile stretched to a cube; default 0", 0, 1, 0, 0, true }
+#define OPTION_SEED \
+    { "seed", "of what is random; default 0", 0, 4294967295.0, 0, 0, true }
+
+static struct point_set_options point_set_values(const double values[]) {
+    return (struct point_set_options){
+        .features = {.least_edges = (int32_t)values[1], .angle_deg = values[2], .in_unit_cube = values[3] != 0},
+        .line_tolerance_m = values[0],
+        .seed = (uint64_t)values[4]};
+}
+
+static const struct method_option random_options[] = {
+    {"r_r", "posts to remove, percent; default 95", 0, 100, 95, 0, false},
+    OPTION_P_E,
+    OPTION_P_M,
+    OPTION_ANGLE,
+    OPTION_CUBE,
+    OPTION_SEED,
+};
+
+static enum scree_status run_random(struct scree_memory *memory, const struct method_tile *tile, const double values[],
+                                    struct method_mesh *mesh, struct scree_error *error) {
+    const struct method_random_options options = {.removed_percent = values[0], .points = point_set_values(values + 1)};
+    return method_random(memory, tile, &options, mesh, error);
+}
+
+static const struct method_option grid_options[] = {
+    {"d_g", "side of a cell, metres; default: 8 posts apart", 1e-3, 1e8, NAN, 0, false},
+    OPTION_P_E,
+    OPTION_P_M,
+    OPTION_ANGLE,
+    OPTION_CUBE,
+    OPTION_SEED,
+};
+
+static enum scree_status run_grid(struct scree_memory *memory, const struct method_tile *tile, const double values[],
+                                  struct method_mesh *mesh, struct scree_error *error) {
+    double eight_posts_m = 8 * tile->cell_span * 0.5 * (tile->east_m + tile->north_m);
+    const struct method_grid_options options = {.cell_m = isnan(values[0]) ? eight_posts_m : values[0],
+                                                .points = point_set_values(values + 1)};
+    return method_grid(memory, tile, &options, mesh, error);
+}
+
+static const struct method_option hierarchy_options[] = {
+    {"h_v", "largest surface variation of a cluster; default 0.01", 0, 1.0 / 3, 0.01, 0, false},
+    {"h_c", "most posts in a cluster; default 100", 1, 1e9, 100, 0, true},
+    OPTION_P_E,
+    OPTION_P_M,
+    OPTION_ANGLE,
+    OPTION_CUBE,
+    OPTION_SEED,
+};
+
+static enum scree_status run_hierarchy(struct scree_memory *memory, const struct method_tile *tile,
+                                       const double values[], struct method_mesh *mesh, struct scree_error *error) {
+    const struct method_hierarchy_options options = {
+        .most_variation = values[0], .most_posts = (uint32_t)values[1], .points = point_set_values(values + 2)};
+    return method_hierarchy(memory, tile, &options, mesh, error);
+}
+
+static const struct method_option wlop_options[] = {
+    {"w_p", "posts to retain, percent; default 5", 0, 100, 5, 0, false},
+    {"w_r", "radius in which neighbours count, metres, at most 32 posts; default: 8 posts", 1e-3, 1e8, NAN, 0, false},
+    {"w_i", "iterations; default 15", 1, 1000, WLOP_ITERATIONS, 0, true},
+    OPTION_P_E,
+    OPTION_P_M,
+    OPTION_ANGLE,
+    OPTION_CUBE,
+    OPTION_SEED,
+};
+
+static enum scree_status run_wlop(struct scree_memory *memory, const struct method_tile *tile, const double values[],
+                                  struct method_mesh *mesh, struct scree_error *error) {
+    const struct method_wlop_options options = {.kept_percent = values[0],
+                                                .radius_m = isnan(values[1]) ? 0 : values[1],
+                                                .iterations = (int32_t)values[2],
+                                                .points = point_set_values(values + 3)};
+    return method_wlop(memory, tile, &options, mesh, error);
+}
+
 /* ---- the table ---- */
 
 /* name, what it is good for, its options, contradictions, run */
@@ -43,5 +137,12 @@ const struct method method_table[] = {
      run_greedy},
     {"quadtree", "Cifuentes' quadtree of leaves with little curvature: by far the fastest", OPTIONS(quadtree_options),
      NULL, run_quadtree},
+    {"random", "random posts between feature lines: the floor for all others", OPTIONS(random_options), NULL,
+     run_random},
+    {"grid", "a random post out of each cell of a grid, between feature lines", OPTIONS(grid_options), NULL, run_grid},
+    {"hierarchy", "Pauly's clusters of posts that are small and flat, between feature lines",
+     OPTIONS(hierarchy_options), NULL, run_hierarchy},
+    {"wlop", "Huang's projection: evenly spread and smoothed, for noisy terrain", OPTIONS(wlop_options), NULL,
+     run_wlop},
     {NULL, NULL, 0, NULL, NULL, NULL},
 };
