@@ -1,9 +1,14 @@
-// The OpenSceneGraph plugin for streams: osgviewer TILE.scree, osgconv TILE.scree OUT.osgt.
+// The OpenSceneGraph plugin for streams: osgviewer TILE.scree, osgconv TILE.scree OUT.osgt, and for all tiles together
+// osgviewer OUT/stream/scree.json.scree (OpenSceneGraph goes by the last extension).
 //
-// Options (osgviewer -O "error=5"): svo=M or error=M for the coarsest rung that is good enough, rung=L for one of the
-// ladder; without any, the finest.
+// Options (osgviewer -O "error=5"). A tile: svo=M or error=M for the coarsest rung that is good enough, rung=L for one
+// of the ladder; without any, the finest. All tiles: see viewer/terrain_words.h.
+#include "viewer/terrain_node.h"
+#include "viewer/terrain_words.h"
+#include "viewer/tile_file_io.h"
 #include "viewer/tile_node.h"
 
+#include <osg/CoordinateSystemNode>
 #include <osgDB/FileNameUtils>
 #include <osgDB/FileUtils>
 #include <osgDB/ReadFile>
@@ -15,11 +20,6 @@
 #include <sstream>
 
 namespace {
-
-struct PlayerDeleter {
-    void operator()(scree_player *player) const { scree_player_free(player); }
-};
-using Player = std::unique_ptr<scree_player, PlayerDeleter>;
 
 // Which rung the options ask for; false when they cannot be understood.
 bool rung_of(const scree_stream_header *header, const osgDB::Options *options, uint32_t *rung) {
@@ -48,6 +48,7 @@ class ReaderWriterScree : public osgDB::ReaderWriter {
         supportsOption("svo=M", "the coarsest rung whose smallest visible object is at most M metres");
         supportsOption("error=M", "the coarsest rung whose largest error is at most M metres");
         supportsOption("rung=L", "a rung of the scale ladder");
+        for (const TerrainWord &word : terrain_words()) supportsOption(word.form, word.meaning);
     }
 
     const char *className() const override { return "Scree stream reader"; }
@@ -58,6 +59,8 @@ class ReaderWriterScree : public osgDB::ReaderWriter {
 
     ReadResult readNode(const std::string &name, const Options *options) const override {
         if (!acceptsExtension(osgDB::getLowerCaseFileExtension(name))) return ReadResult::FILE_NOT_HANDLED;
+        std::string whole = osgDB::getNameLessExtension(name);
+        if (osgDB::getLowerCaseFileExtension(whole) == "json") return terrain(whole, options);
         std::string path = osgDB::findDataFile(name, options);
         if (path.empty()) return ReadResult::FILE_NOT_FOUND;
         osgDB::ifstream file(path.c_str(), std::ios::in | std::ios::binary);
@@ -71,6 +74,21 @@ class ReaderWriterScree : public osgDB::ReaderWriter {
     }
 
   private:
+    // Manipulators learn from the node above it where up is on a globe.
+    static ReadResult terrain(const std::string &name, const Options *options) {
+        TerrainOptions opening;
+        std::string error, found = osgDB::findDataFile(name, options);
+        if (!terrain_words_read(options != nullptr ? options->getOptionString() : "", &opening, &error))
+            return ReadResult(error);
+        osg::ref_ptr<TerrainNode> node = TerrainNode::open(found.empty() ? name : found, opening, &error);
+        if (node == nullptr) return ReadResult(error);
+        if (!node->world().is_geodetic()) return ReadResult(node.get());
+        osg::ref_ptr<osg::CoordinateSystemNode> globe = new osg::CoordinateSystemNode("WKT", "EPSG:4326");
+        globe->setEllipsoidModel(new osg::EllipsoidModel);
+        globe->addChild(node);
+        return ReadResult(globe.get());
+    }
+
     static ReadResult read(std::istream &file, const std::string &name, const Options *options) {
         scree_error error = {};
         scree_player *made = nullptr;

@@ -64,6 +64,7 @@ void WindowLoop::play() {
 }
 
 void WindowLoop::record() {
+    if (recorded.is_empty()) record_begin_s = now_s();
     const double time_s = now_s() - record_begin_s;
     if (!is_recording || (!recorded.is_empty() && time_s < recorded.end_s() + RECORD_EVERY_S)) return;
     recorded.add(time_s, place_of_camera(session->stage.terrain->world(), session->stage.camera_to_world()));
@@ -113,7 +114,7 @@ void WindowLoop::step() {
 
 bool WindowLoop::run(std::string *error) {
     KeyRequests &requests = session->stage.keys->requests;
-    begin_s = flight_begin_s = record_begin_s = counted_since_s = now_s();
+    begin_s = flight_begin_s = counted_since_s = now_s();
     is_recording = !session->arguments.record.empty();
     is_flying = !session->flight.path.is_empty();
     if (session->flight.play_s > 0) toggle_playing();
@@ -126,7 +127,6 @@ bool WindowLoop::run(std::string *error) {
             keep_recording(&reason);
         } else {
             is_recording = true;
-            record_begin_s = now_s();
         }
     }
     return keep_recording(error);

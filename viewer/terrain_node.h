@@ -44,6 +44,8 @@ class TerrainNode : public osg::Node {
 
     osg::BoundingSphere computeBound() const override;
     void traverse(osg::NodeVisitor &visitor) override;
+    void releaseGLObjects(osg::State *state = nullptr) const override;
+    void resizeGLObjectBuffers(unsigned contexts) override;
 
   protected:
     ~TerrainNode() override;

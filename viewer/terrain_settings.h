@@ -18,12 +18,13 @@ enum class TerrainColour {
 struct TerrainSettings {
     scree_measure measure = SCREE_BY_SVO;
     double tolerance_px = 1;
-    double manual_svo_m = 0; // above 0: every tile at the coarsest rung with at most this SVO, whatever the view
-    bool is_frozen = false;  // the selection stays as it is
-    bool morph = true;       // geomorphs; else rungs change at once
-    bool stitch = true;      // tiles of different rungs meet without cracks
-    bool contours = false;   // lines of equal height
-    double contour_m = 0;    // from line to line; 0: chosen from the relief
+    double manual_svo_m = 0;      // above 0: every tile at the coarsest rung with at most this SVO, whatever the view
+    bool is_frozen = false;       // the selection stays as it is
+    double rungs_per_second = 24; // how fast scales may change; 0: at once
+    bool morph = true;            // geomorphs; else rungs change at once
+    bool stitch = true;           // tiles of different rungs meet without cracks
+    bool contours = false;        // lines of equal height
+    double contour_m = 0;         // from line to line; 0: chosen from the relief
     TerrainColour colour = TerrainColour::TINT;
     uint64_t triangle_budget = 0;              // 0: none
     uint64_t memory_bytes = (uint64_t)1 << 30; // of all tiles that are held, drawn or not
@@ -33,7 +34,7 @@ struct TerrainSettings {
 struct TerrainOptions {
     TerrainSettings settings;
     unsigned loaders = 2; // threads that read and decode; 0: tiles are loaded in the frame that wants them
-    int glsl = 0;         // 120 or 330; 0: 330 where the driver has it
+    int glsl = 120;       // or 330
     std::string texture;  // an image with georeference, any that GDAL reads; "": none
 };
 

@@ -1,0 +1,72 @@
+#include "viewer/loaders.h"
+
+LoadedTile load_tile(const LoadRequest &request, const MeshWorld &world) {
+    TileFile file = tile_file_read(request.path, request.rungs);
+    LoadedTile tile = {request.tile, request.rungs, nullptr, file.bytes_read, file.is_broken, std::move(file.error)};
+    if (file.player != nullptr) tile.mesh = std::make_unique<TileMesh>(std::move(file.player), world);
+    return tile;
+}
+
+Loaders::Loaders(unsigned count, const MeshWorld &world) : world(world) {
+    for (unsigned i = 0; i < count; i++) threads.emplace_back([this] { work(); });
+}
+
+Loaders::~Loaders() {
+    {
+        std::lock_guard<std::mutex> guard(lock);
+        is_ending = true;
+    }
+    has_work.notify_all();
+    for (std::thread &thread : threads) thread.join();
+}
+
+void Loaders::work() {
+    std::unique_lock<std::mutex> guard(lock);
+    while (true) {
+        has_work.wait(guard, [this] { return is_ending || !queue.empty(); });
+        if (is_ending) return;
+        LoadRequest request = std::move(queue.front());
+        queue.pop_front();
+        if (!begun.insert(request.tile).second) continue;
+        guard.unlock();
+        LoadedTile tile;
+        try {
+            tile = load_tile(request, world);
+        } catch (const std::bad_alloc &) {
+            tile = {request.tile, request.rungs, nullptr, 0, true, request.path + ": no memory is left for it"};
+        }
+        guard.lock();
+        finished.push_back(std::move(tile));
+    }
+}
+
+void Loaders::want(std::deque<LoadRequest> requests) {
+    {
+        std::lock_guard<std::mutex> guard(lock);
+        queue = std::move(requests);
+    }
+    has_work.notify_all();
+}
+
+std::vector<LoadedTile> Loaders::take() {
+    std::lock_guard<std::mutex> guard(lock);
+    std::vector<LoadedTile> taken = std::move(finished);
+    finished.clear();
+    for (const LoadedTile &tile : taken) begun.erase(tile.tile);
+    return taken;
+}
+
+bool Loaders::is_loading(uint32_t tile) const {
+    std::lock_guard<std::mutex> guard(lock);
+    return begun.count(tile) != 0;
+}
+
+uint32_t Loaders::loading() const {
+    std::lock_guard<std::mutex> guard(lock);
+    return (uint32_t)begun.size();
+}
+
+bool Loaders::is_idle() const {
+    std::lock_guard<std::mutex> guard(lock);
+    return queue.empty() && begun.empty() && finished.empty();
+}

@@ -1,0 +1,304 @@
+#include "viewer/terrain_set.h"
+
+#include "viewer/stopwatch_io.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace {
+
+constexpr uint32_t RUNGS_AHEAD = 4;                   // an octave: what has to be decoded again is then little
+constexpr uint64_t BYTES_A_TRIANGLE = 200;            // of memory, measured
+constexpr uint64_t BYTES_A_BASE = 1u << 17;           // of a tile of which nothing is known yet
+constexpr double LOWEST_M = -12000, HIGHEST_M = 9000; // until the roots have told
+
+MeshWorld world_of(const Manifest &manifest) {
+    MeshWorld world;
+    if (manifest.terrain.profile == SCREE_LOCAL) {
+        world.metres_x = manifest.terrain.metres_x / manifest.terrain.spacing_x;
+        world.metres_y = manifest.terrain.metres_y / manifest.terrain.spacing_y;
+    }
+    std::copy_n(manifest.bounds, 4, world.bounds);
+    return world;
+}
+
+// A view that sees everything, a metre being a pixel: the tolerance is then in metres.
+scree_view view_of_scale() {
+    scree_view view = {};
+    view.depth[3] = 1;
+    view.pixels = 1;
+    return view;
+}
+
+} // namespace
+
+TerrainSet::TerrainSet(Manifest taken, const TerrainOptions &options, Log log)
+    : manifest(std::move(taken)), world(world_of(manifest)), loader_count(options.loaders), log(std::move(log)) {
+    manifest.terrain.zooms = manifest.single_file.empty() ? manifest.zooms.data() : nullptr;
+    manifest.terrain.lowest_m = LOWEST_M;
+    manifest.terrain.highest_m = HIGHEST_M;
+    for (const scree_tile_id &id : manifest.tiles) {
+        scree_select_tile tile = {};
+        tile.id = id;
+        tile.lowest_m = 1; // above the highest: not known
+        tiles.push_back(tile);
+    }
+    held.resize(tiles.size());
+    is_final.resize(tiles.size(), 0);
+}
+
+bool TerrainSet::open(std::string *error) {
+    scree_error failure = {};
+    uint32_t count = tile_count();
+    if (scree_select_link(&manifest.terrain, tiles.data(), count, &failure) != SCREE_OK) {
+        *error = "the list of available tiles: " + std::string(failure.text);
+        return false;
+    }
+    parents.assign(count, UINT32_MAX);
+    for (uint32_t i = 0; i < count; i++)
+        for (uint32_t child = 0; child < tiles[i].child_count; child++) parents[tiles[i].first_child + child] = i;
+    cut = std::make_unique<MovingCut>(tiles, is_final);
+    selected.resize(count);
+    wanted.resize(count);
+    workspace.resize(scree_select_workspace(count) / sizeof(double) + 1);
+    double lowest_m = HUGE_VAL, highest_m = -HUGE_VAL;
+    for (uint32_t i = 0; i < count && parents[i] == UINT32_MAX; i++) {
+        LoadedTile root = load_tile({i, 1, manifest.path_of(tiles[i].id)}, world);
+        if (root.mesh == nullptr) {
+            *error = root.error;
+            return false;
+        }
+        take(std::move(root));
+        lowest_m = std::min(lowest_m, (double)tiles[i].lowest_m);
+        highest_m = std::max(highest_m, (double)tiles[i].highest_m);
+    }
+    manifest.terrain.lowest_m = lowest_m;
+    manifest.terrain.highest_m = highest_m;
+    if (loader_count > 0) loaders = std::make_unique<Loaders>(loader_count, world);
+    return true;
+}
+
+// ---- what has come ----
+
+void TerrainSet::keep_heights(uint32_t tile, const TileMesh &mesh) {
+    scree_select_tile &place = tiles[tile];
+    if (place.lowest_m <= place.highest_m) return;
+    // the base mesh's bounds hold for all finer ones
+    mesh.base_heights(manifest.terrain, &place.lowest_m, &place.highest_m);
+}
+
+void TerrainSet::take(LoadedTile loaded) {
+    uint32_t tile = loaded.tile;
+    told.bytes_loaded += loaded.bytes_read;
+    if (loaded.is_broken) {
+        log(loaded.error);
+        is_final[tile] = 1;
+    }
+    if (loaded.mesh == nullptr || (held[tile].mesh != nullptr && loaded.mesh->rungs_ready() <= tiles[tile].rungs_ready))
+        return;
+    if (held[tile].mesh == nullptr) holding.push_back(tile);
+    held[tile] = {std::move(loaded.mesh), frame_number, 0};
+    held[tile].bytes = held[tile].mesh->bytes();
+    tiles[tile].header = &held[tile].mesh->header();
+    tiles[tile].rungs_ready = held[tile].mesh->rungs_ready();
+    keep_heights(tile, *held[tile].mesh);
+}
+
+void TerrainSet::take_arrivals() {
+    if (loaders == nullptr) return;
+    for (LoadedTile &loaded : loaders->take()) take(std::move(loaded));
+}
+
+// ---- what is drawn ----
+
+void TerrainSet::choose(const scree_view &view, const TerrainSettings &settings) {
+    bool is_manual = settings.manual_svo_m > 0;
+    scree_view scale = view_of_scale();
+    scree_select_options options = {};
+    options.measure = is_manual ? SCREE_BY_SVO : settings.measure;
+    options.tolerance_px = is_manual ? settings.manual_svo_m : settings.tolerance_px;
+    uint64_t room = std::max<uint64_t>(settings.memory_bytes / (2 * BYTES_A_TRIANGLE), 1);
+    options.triangle_budget = settings.triangle_budget == 0 ? room : std::min(room, settings.triangle_budget);
+    selection.capacity = tile_count();
+    selection.drawn = selected.data();
+    selection.wanted = wanted.data();
+    selection.workspace = workspace.data();
+    selection.workspace_bytes = workspace.size() * sizeof(double);
+    scree_error failure = {};
+    if (scree_select(&manifest.terrain, tiles.data(), tile_count(), is_manual ? &scale : &view, &options, &selection,
+                     &failure) != SCREE_OK) {
+        log(std::string("the selection: ") + failure.text);
+        selection.drawn_count = selection.wanted_count = 0;
+    }
+    told.tolerance_px = selection.tolerance_px;
+}
+
+void TerrainSet::seek() {
+    std::vector<Shown> before = std::move(drawn);
+    drawn.clear();
+    changed.clear();
+    told.splits = 0;
+    size_t old = 0; // both lists are in the order of the cut
+    bool is_same_cut = before.size() == cut->tiles().size();
+    for (const CutTile &one : cut->tiles()) {
+        Held &tile = held[one.tile];
+        while (old < before.size() && scree_tile_compare(&tiles[before[old].tile].id, &tiles[one.tile].id) < 0) old++;
+        bool was_drawn = old < before.size() && before[old].tile == one.tile;
+        bool is_new = !was_drawn || before[old].mesh != tile.mesh;
+        bool is_other = tile.mesh->seek(one.level, &told.splits);
+        is_same_cut = is_same_cut && was_drawn;
+        drawn.push_back({one.tile, tile.mesh});
+        changed.push_back(is_new || is_other);
+        for (uint32_t at = one.tile; at != UINT32_MAX; at = parents[at]) held[at].last_frame = frame_number;
+    }
+    bool is_same = is_same_cut;
+    for (size_t i = 0; i < drawn.size() && is_same; i++) is_same = drawn[i].mesh == before[i].mesh;
+    if (!is_same) find_neighbours();
+}
+
+void TerrainSet::find_neighbours() {
+    std::vector<scree_tile_id> ids;
+    for (const Shown &one : drawn) ids.push_back(tiles[one.tile].id);
+    uint32_t count = (uint32_t)ids.size();
+    std::vector<uint32_t> beside(count);
+    std::vector<std::vector<TileMesh::Neighbour>> found(count);
+    for (uint32_t i = 0; i < count; i++)
+        for (int side = 0; side < SCREE_SIDES; side++) {
+            uint32_t at_side = scree_cut_neighbours(ids.data(), count, manifest.terrain.profile, &ids[i],
+                                                    (scree_side)side, beside.data(), count);
+            for (uint32_t k = 0; k < at_side; k++) found[i].push_back({drawn[beside[k]].mesh.get(), (scree_side)side});
+        }
+    // a tile whose neighbours are others has to be stitched anew
+    for (uint32_t i = 0; i < count; i++) changed[i] = 1;
+    neighbours = std::move(found);
+}
+
+void TerrainSet::stitch_changed(bool stitched) {
+    std::unordered_map<const TileMesh *, size_t> places;
+    std::vector<char> is_due(drawn.size(), stitched != was_stitched);
+    for (size_t i = 0; i < drawn.size(); i++)
+        if (changed[i]) places.emplace(drawn[i].mesh.get(), i);
+    for (size_t i = 0; i < drawn.size(); i++) {
+        if (changed[i]) is_due[i] = 1;
+        for (const TileMesh::Neighbour &beside : neighbours[i])
+            if (places.count(beside.mesh) != 0) is_due[i] = 1;
+    }
+    was_stitched = stitched;
+    for (size_t i = 0; i < drawn.size(); i++)
+        if (is_due[i]) drawn[i].mesh->share_normals(neighbours[i]);
+    for (size_t i = 0; i < drawn.size(); i++) {
+        std::string error;
+        if (is_due[i] && !drawn[i].mesh->stitch(stitched ? neighbours[i] : std::vector<TileMesh::Neighbour>{}, &error))
+            log(manifest.path_of(tiles[drawn[i].tile].id) + ": " + error);
+    }
+}
+
+void TerrainSet::tell_drawn() {
+    told.tiles_drawn = (uint32_t)drawn.size();
+    told.triangles = 0;
+    for (size_t i = 0; i < drawn.size(); i++) {
+        const TileMesh &mesh = *drawn[i].mesh;
+        const scree_rung &rung = mesh.header().rungs[mesh.rung()];
+        told.triangles += mesh.triangle_count();
+        told.coarsest_rung = i == 0 ? rung.rung : std::min(told.coarsest_rung, rung.rung);
+        told.finest_rung = i == 0 ? rung.rung : std::max(told.finest_rung, rung.rung);
+        told.coarsest_svo_m = i == 0 ? rung.svo_m : std::max(told.coarsest_svo_m, (double)rung.svo_m);
+        told.finest_svo_m = i == 0 ? rung.svo_m : std::min(told.finest_svo_m, (double)rung.svo_m);
+    }
+    told.tiles_held = (uint32_t)holding.size();
+    told.tiles_loading = loaders == nullptr ? 0 : loaders->loading();
+    told.bytes_held = 0;
+    for (uint32_t tile : holding) told.bytes_held += held[tile].bytes;
+}
+
+void TerrainSet::frame(const scree_view &view, const TerrainSettings &settings, double seconds) {
+    frame_number++;
+    Stopwatch watch;
+    take_arrivals();
+    if (!settings.is_frozen) choose(view, settings);
+    if (settings.is_frozen && !is_first)
+        cut->step(selected.data(), selection.drawn_count, 0);
+    else if (is_first || settings.rungs_per_second <= 0 || !settings.morph)
+        cut->jump(selected.data(), selection.drawn_count);
+    else
+        cut->step(selected.data(), selection.drawn_count, settings.rungs_per_second * seconds);
+    is_first = false;
+    told.select_ms = watch.lap_ms();
+    seek();
+    told.seek_ms = watch.lap_ms();
+    stitch_changed(settings.stitch);
+    told.stitch_ms = watch.lap_ms();
+    make_room(settings.memory_bytes);
+    request(settings);
+    tell_drawn();
+    told.select_ms += watch.lap_ms();
+}
+
+// ---- what is to come, and what has to go ----
+
+void TerrainSet::request(const TerrainSettings &settings) {
+    std::deque<LoadRequest> requests;
+    uint64_t room = settings.memory_bytes > told.bytes_held ? settings.memory_bytes - told.bytes_held : 0;
+    auto ask = [&](uint32_t tile, uint32_t rungs) {
+        const scree_stream_header *header = tiles[tile].header;
+        if (header != nullptr) rungs = std::min(rungs, header->rung_count);
+        if (is_final[tile] || rungs <= tiles[tile].rungs_ready) return;
+        uint64_t bytes = header == nullptr ? BYTES_A_BASE : BYTES_A_TRIANGLE * header->rungs[rungs - 1].triangle_count;
+        if (bytes > room) return;
+        room -= bytes;
+        requests.push_back({tile, rungs, manifest.path_of(tiles[tile].id)});
+    };
+    for (uint32_t tile : cut->awaited()) ask(tile, UINT32_MAX);
+    for (uint32_t i = 0; i < selection.wanted_count; i++)
+        ask(wanted[i].tile, wanted[i].end_rung <= 1 ? 1 : wanted[i].end_rung + RUNGS_AHEAD);
+    if (loaders != nullptr) return loaders->want(std::move(requests));
+    for (const LoadRequest &one : requests) take(load_tile(one, world));
+}
+
+void TerrainSet::drop(uint32_t tile) {
+    held[tile] = {};
+    tiles[tile].header = nullptr;
+    tiles[tile].rungs_ready = 0;
+    holding.erase(std::find(holding.begin(), holding.end(), tile));
+}
+
+// The tiles that have not been drawn for longest go first, and no tile before those below it.
+void TerrainSet::make_room(uint64_t memory_bytes) {
+    uint64_t bytes = 0;
+    for (uint32_t tile : holding) bytes += held[tile].bytes;
+    if (bytes <= memory_bytes - memory_bytes / 8) return;
+    std::vector<uint32_t> oldest = holding;
+    std::sort(oldest.begin(), oldest.end(), [this](uint32_t a, uint32_t b) {
+        if (held[a].last_frame != held[b].last_frame) return held[a].last_frame < held[b].last_frame;
+        return a > b; // finer zooms have higher numbers
+    });
+    for (uint32_t tile : oldest) {
+        bool has_below = false;
+        for (uint32_t child = 0; child < tiles[tile].child_count; child++)
+            has_below = has_below || tiles[tiles[tile].first_child + child].rungs_ready > 0;
+        if (held[tile].last_frame == frame_number || has_below || parents[tile] == UINT32_MAX) continue;
+        bytes -= held[tile].bytes;
+        drop(tile);
+        if (bytes <= memory_bytes - memory_bytes / 4) return;
+    }
+}
+
+std::pair<double, double> TerrainSet::svo_range_m() const {
+    double finest_m = HUGE_VAL, coarsest_m = 0;
+    for (uint32_t i = 0; i < tile_count() && parents[i] == UINT32_MAX; i++)
+        if (tiles[i].header != nullptr) {
+            const scree_stream_header &header = *tiles[i].header;
+            coarsest_m = std::max(coarsest_m, (double)header.rungs[0].svo_m);
+            finest_m = std::min(finest_m, (double)header.rungs[header.rung_count - 1].svo_m);
+        }
+    for (const scree_zoom_scale &zoom : manifest.zooms)
+        if (zoom.finest_svo_m > 0) finest_m = std::min(finest_m, zoom.finest_svo_m);
+    return {finest_m, coarsest_m};
+}
+
+bool TerrainSet::is_settled() const {
+    if (is_first || !cut->is_still()) return false;
+    bool lacks = false;
+    for (uint32_t i = 0; i < selection.wanted_count; i++) lacks = lacks || !is_final[wanted[i].tile];
+    return !lacks && (loaders == nullptr || loaders->is_idle());
+}
