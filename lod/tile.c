@@ -4,6 +4,7 @@
 #include "lod/extremes.h"
 #include "lod/merge.h"
 #include "lod/quadric.h"
+#include "lod/tile_lines.h"
 
 #include <math.h>
 #include <string.h>
@@ -97,16 +98,10 @@ static enum scree_status make_grid(struct tile *tile, int32_t step, struct scree
 }
 
 static void start_line(struct tile *tile, enum tile_side side, int32_t step, const float *heights_m, int32_t stride) {
-    struct border_line *line = &tile->lines[side];
-    int32_t length = side == SIDE_SOUTH || side == SIDE_NORTH ? tile->geometry.columns : tile->geometry.rows;
-    line->curvature_m = tile->geometry.side_drop_m[side];
-    line->vertex_count = line->sample_count = length / step + 1;
-    for (int32_t i = 0; i < line->vertex_count; i++) {
-        float height_m = heights_m[(int64_t)i * stride];
-        line->samples[i] = (struct border_sample){i * step, height_m};
-        line->vertices[i] =
-            (struct border_sample){i * step, (float)(height_units(tile, height_m) * tile->geometry.height_unit_m)};
-    }
+    const struct tile_geometry *geometry = &tile->geometry;
+    int32_t length = side == SIDE_SOUTH || side == SIDE_NORTH ? geometry->columns : geometry->rows;
+    tile_line_start(&tile->lines[side], length, step, geometry->side_drop_m[side], geometry->height_unit_m, heights_m,
+                    stride);
 }
 
 static enum scree_status start_rest(struct tile *tile, struct scree_error *error) {
@@ -209,26 +204,9 @@ static enum scree_status border_is_closed(const struct tile *tile, struct scree_
 
 static enum scree_status join_lines(struct tile *tile, const struct coarse_tile *const children[4], int32_t child_span,
                                     struct scree_error *error) {
-    static const struct {
-        enum tile_side side;
-        int first, second;           /* children along the line */
-        int first_else, second_else; /* where the window ends before them */
-    } joins[SIDE_COUNT] = {
-        {SIDE_SOUTH, 0, 1, 0, 1}, {SIDE_EAST, 1, 3, 0, 2}, {SIDE_NORTH, 2, 3, 0, 1}, {SIDE_WEST, 0, 2, 0, 2}};
-    for (int i = 0; i < SIDE_COUNT; i++) {
-        bool outer = children[joins[i].first] != NULL;
-        const struct coarse_tile *first = children[outer ? joins[i].first : joins[i].first_else];
-        const struct coarse_tile *second = children[outer ? joins[i].second : joins[i].second_else];
-        enum tile_side side = joins[i].side;
-        if (!border_join(&first->lines[side], second != NULL ? &second->lines[side] : NULL, child_span,
-                         tile->geometry.cell_span, &tile->lines[side]))
-            return scree_fail(error, SCREE_E_LIMIT,
-                              "the tolerance is too small for so coarse a zoom: a tile's border keeps more than %d "
-                              "vertices; raise --error or --error-at, or start at a higher --min-zoom",
-                              BORDER_MAX_VERTICES);
-        tile->lines[side].curvature_m = tile->geometry.side_drop_m[side];
-    }
-    return SCREE_OK;
+    const struct border_line *lines[4];
+    for (int i = 0; i < 4; i++) lines[i] = children[i] != NULL ? children[i]->lines : NULL;
+    return tile_lines_join(lines, child_span, tile->geometry.cell_span, tile->geometry.side_drop_m, tile->lines, error);
 }
 
 enum scree_status tile_from_children(struct scree_memory *memory, const struct tile_geometry *geometry,
@@ -336,16 +314,6 @@ void tile_set_codes(struct tile *tile, struct code_frame codes) {
     tile->simplifier.samples.rounding_steps = rounding_steps(codes);
 }
 
-/* `codes`: NULL when the rung is not written. */
-static void reduce_lines(struct tile *tile, struct border_line lines[SIDE_COUNT], double tolerance_m,
-                         const struct code_frame *codes) {
-    for (int side = 0; side < SIDE_COUNT; side++) {
-        bool horizontal = side == SIDE_SOUTH || side == SIDE_NORTH;
-        border_reduce(&lines[side], BORDER_SHARE * tolerance_m, tile->geometry.locked_step);
-        if (codes != NULL) border_separate_codes(&lines[side], codes->span, horizontal ? codes->x : codes->y);
-    }
-}
-
 /* The first rung to come has come, as far as the border goes. */
 static void look_further(struct tile *tile) {
     tile->ahead.next++;
@@ -357,7 +325,8 @@ static enum scree_status advance(struct tile *tile, double tolerance_m, bool wri
     bool looks_ahead = simplifier->options.ahead != NULL;
     float bound_m = looks_ahead ? tile->ahead.rungs[tile->ahead.next].tolerance_m : (float)tolerance_m;
     simplifier->samples.rounding_limit_m = looks_ahead && !written ? 0 : ROUNDING_SHARE * bound_m;
-    reduce_lines(tile, tile->lines, tolerance_m, written ? &simplifier->options.codes : NULL);
+    tile_lines_reduce(tile->lines, tolerance_m, tile->geometry.locked_step,
+                      written ? &simplifier->options.codes : NULL);
     enum scree_status status =
         border_collapse(simplifier, tile->lines, tile->geometry.columns, tile->geometry.rows, bound_m, error);
     if (status != SCREE_OK) return status;
@@ -399,7 +368,8 @@ enum scree_status tile_look_ahead(struct tile *tile, const struct tile_rung *run
         rung->samples.rounding_steps = rounding_steps(rung->codes);
         rung->samples.rounding_limit_m = ROUNDING_SHARE * rung->tolerance_m;
         memcpy(rung->lines, i == 0 ? tile->lines : rung[-1].lines, sizeof rung->lines);
-        reduce_lines(tile, rung->lines, rungs[i].tolerance_m, rung->codes.span != 0 ? &rung->codes : NULL);
+        tile_lines_reduce(rung->lines, rungs[i].tolerance_m, tile->geometry.locked_step,
+                          rung->codes.span != 0 ? &rung->codes : NULL);
     }
     tile->simplifier.options.ahead = ahead;
     return SCREE_OK;

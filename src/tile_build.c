@@ -9,58 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Corners of the tiles of this zoom stay at all zooms above it: over longer distances a globe is no height field over
- * a plane, and its roundness must not hang on measured errors alone. */
-#define LOCKED_ZOOM 4
-
-#define MARGIN 1 /* posts around a tile, for slopes on its border */
-
-static struct tile_geometry geometry_of(const struct tile_plan *plan, struct tile_id id,
-                                        float east_drop_m[TILE_CELLS + 1]) {
-    const struct lattice *lattice = plan->lattice;
-    struct lattice_window window = lattice_tile_window(lattice, id);
-    struct tile_geometry geometry = {.columns = window.columns,
-                                     .rows = window.rows,
-                                     .cell_span = (int32_t)(lattice_tile_span(lattice, id.zoom) / TILE_CELLS),
-                                     .height_unit_m = plan->ladder->height_unit_m};
-    double south_m, north_m, top = (double)window.y + window.rows;
-    lattice_steps_m(lattice, (double)window.y, &south_m, &geometry.north_m);
-    lattice_steps_m(lattice, top, &north_m, &geometry.north_m);
-    geometry.east_m = fmax(south_m, north_m);
-    for (int32_t row = 0; row * geometry.cell_span < window.rows + geometry.cell_span; row++)
-        east_drop_m[row] = (float)lattice_parallel_drop_m(lattice, (double)window.y + (double)row * geometry.cell_span);
-    geometry.east_drop_m = lattice->profile == PROFILE_GEODETIC ? east_drop_m : NULL;
-    geometry.north_drop_m = (float)lattice_meridian_drop_m(lattice);
-    geometry.side_drop_m[SIDE_SOUTH] = lattice_parallel_drop_m(lattice, (double)window.y);
-    geometry.side_drop_m[SIDE_NORTH] = lattice_parallel_drop_m(lattice, top);
-    geometry.side_drop_m[SIDE_EAST] = geometry.side_drop_m[SIDE_WEST] = lattice_meridian_drop_m(lattice);
-    if (lattice->profile == PROFILE_GEODETIC)
-        geometry.locked_step = (int64_t)ldexp(TILE_CELLS, lattice->finest_zoom - LOCKED_ZOOM);
-    return geometry;
-}
-
-/* The frame in which a tile of `zoom` will be written, as the tile `id` sees it: its own, or its parent's. */
-static struct code_frame frame_of(const struct tile_plan *plan, struct tile_id id, int zoom) {
-    int64_t span = lattice_tile_span(plan->lattice, zoom);
-    if (zoom == id.zoom) return (struct code_frame){span, 0, 0};
-    return (struct code_frame){span, id.x % 2 != 0 ? (int32_t)(span / 2) : 0, id.y % 2 != 0 ? (int32_t)(span / 2) : 0};
-}
-
 /* ---- from rung to rung ---- */
-
-static int coarsest_rung(struct tile_id id) {
-    return RUNGS_A_ZOOM * (id.zoom - 1);
-}
-
-/* The zoom whose static tile the rung is, or is on the way to. */
-static int zoom_ahead(struct tile_id id, int rung) {
-    return rung >= RUNGS_A_ZOOM * id.zoom ? id.zoom : id.zoom - 1;
-}
-
-/* Whether static tiles are made of the rung. */
-static bool is_static(int rung, int zoom) {
-    return zoom >= 0 && rung == RUNGS_A_ZOOM * zoom;
-}
 
 static enum scree_status mark(struct tile_walk *walk, double max_error_m, struct scree_error *error) {
     if (!walk->is_recorded) return SCREE_OK;
@@ -82,12 +31,12 @@ static enum scree_status start_recording(struct tile_walk *walk, bool record, do
 
 static enum scree_status take_to(const struct tile_plan *plan, struct tile_walk *walk, int rung,
                                  struct scree_error *error) {
-    int zoom = zoom_ahead(walk->id, rung);
+    int zoom = tile_zoom_ahead(walk->id, rung);
     double tolerance_m = ladder_rung_tolerance_m(plan->ladder, rung);
     walk->rung = rung;
-    if (zoom >= 0) tile_set_codes(&walk->tile, frame_of(plan, walk->id, zoom));
-    return is_static(rung, zoom) ? tile_advance(&walk->tile, tolerance_m, error)
-                                 : tile_advance_between(&walk->tile, tolerance_m, error);
+    if (zoom >= 0) tile_set_codes(&walk->tile, tile_place_frame(plan, walk->id, zoom));
+    return rung_is_static(rung, zoom) ? tile_advance(&walk->tile, tolerance_m, error)
+                                      : tile_advance_between(&walk->tile, tolerance_m, error);
 }
 
 static enum scree_status walk_to(const struct tile_plan *plan, struct tile_walk *walk, int last_rung,
@@ -106,11 +55,11 @@ static enum scree_status walk_to(const struct tile_plan *plan, struct tile_walk 
 static enum scree_status look_ahead(const struct tile_plan *plan, struct tile_walk *walk, int first,
                                     struct scree_error *error) {
     struct tile_rung rungs[MOST_RUNGS];
-    int count = 0, last = walk->id.zoom > 0 ? coarsest_rung(walk->id) : 0;
+    int count = 0, last = walk->id.zoom > 0 ? tile_coarsest_rung(walk->id) : 0;
     for (int rung = first; rung >= last; rung--) {
-        int zoom = zoom_ahead(walk->id, rung);
+        int zoom = tile_zoom_ahead(walk->id, rung);
         rungs[count] = (struct tile_rung){.tolerance_m = ladder_rung_tolerance_m(plan->ladder, rung)};
-        if (is_static(rung, zoom)) rungs[count].codes = frame_of(plan, walk->id, zoom);
+        if (rung_is_static(rung, zoom)) rungs[count].codes = tile_place_frame(plan, walk->id, zoom);
         count++;
     }
     return tile_look_ahead(&walk->tile, rungs, count, error);
@@ -140,22 +89,12 @@ static void begin(struct tile_walk *walk, struct tile_id id) {
 
 static enum scree_status read_posts(const struct tile_plan *plan, struct tile_id id, struct raster_reader *reader,
                                     struct scree_memory *memory, struct tile *tile, struct scree_error *error) {
-    struct lattice_window window = lattice_tile_window(plan->lattice, id);
-    float east_drop_m[TILE_CELLS + 1];
-    struct tile_geometry geometry = geometry_of(plan, id, east_drop_m);
-    int32_t columns = window.columns + 1 + 2 * MARGIN, rows = window.rows + 1 + 2 * MARGIN;
-    enum scree_status status = SCREE_E_MEMORY;
-    float *heights_m = scree_allocate(memory, (size_t)columns * (size_t)rows, sizeof *heights_m, "posts", error);
-    double east_m[TILE_CELLS + 1], north_m[TILE_CELLS + 1];
-    if (heights_m == NULL) goto cleanup;
-    status = raster_read(reader, window.x - MARGIN, window.y - MARGIN, columns, rows, heights_m, columns, error);
-    if (status != SCREE_OK) goto cleanup;
-    for (int32_t y = 0; y <= window.rows; y++)
-        lattice_steps_m(plan->lattice, (double)(window.y + y), &east_m[y], &north_m[y]);
-    struct tile_posts posts = {heights_m + MARGIN * columns + MARGIN, columns, east_m, north_m};
-    status = tile_from_posts(memory, &geometry, &posts, tile, error);
-cleanup:
-    scree_release(memory, heights_m);
+    struct tile_drops drops;
+    struct tile_geometry geometry = tile_place_geometry(plan, id, &drops);
+    struct placed_posts placed;
+    enum scree_status status = placed_posts_read(plan, id, reader, memory, &placed, error);
+    if (status == SCREE_OK) status = tile_from_posts(memory, &geometry, &placed.posts, tile, error);
+    placed_posts_release(memory, &placed);
     return status;
 }
 
@@ -169,23 +108,11 @@ enum scree_status tile_build_finest(const struct tile_plan *plan, struct tile_id
     return status;
 }
 
-/* The widest grid, of a power of two, whose sagitta is far below what the border lines of the tile's coarsest rung
- * bear: two halvings finer than they will keep. */
-static int32_t level_step(const struct tile_plan *plan, struct tile_id id, const struct tile_geometry *geometry) {
-    double tolerance_m = plan->ladder->tolerance_m[id.zoom];
-    double drop_m = geometry->north_drop_m; /* eastward steps are no longer */
-    int64_t step = lattice_tile_span(plan->lattice, id.zoom) / 4;
-    while (step > geometry->cell_span && drop_m * 0.25 * (double)step * (double)step > tolerance_m * BORDER_SHARE / 16)
-        step /= 2;
-    if (geometry->locked_step > 0 && step > geometry->locked_step) step = geometry->locked_step;
-    return (int32_t)step;
-}
-
 enum scree_status tile_build_level(const struct tile_plan *plan, struct tile_id id, bool record,
                                    struct scree_memory *memory, struct tile_walk *walk, struct scree_error *error) {
-    float east_drop_m[TILE_CELLS + 1];
-    struct tile_geometry geometry = geometry_of(plan, id, east_drop_m);
-    int32_t step = level_step(plan, id, &geometry);
+    struct tile_drops drops;
+    struct tile_geometry geometry = tile_place_geometry(plan, id, &drops);
+    int32_t step = tile_place_level_step(plan, id, &geometry);
     int64_t locked_step = geometry.locked_step, half = lattice_tile_span(plan->lattice, id.zoom) / 2;
     bool has_children = id.zoom < plan->lattice->finest_zoom;
     begin(walk, id);
@@ -203,8 +130,8 @@ enum scree_status tile_build_level(const struct tile_plan *plan, struct tile_id 
 enum scree_status tile_build_parent(const struct tile_plan *plan, struct tile_id id,
                                     const struct coarse_tile *const children[4], bool record,
                                     struct scree_memory *memory, struct tile_walk *walk, struct scree_error *error) {
-    float east_drop_m[TILE_CELLS + 1];
-    struct tile_geometry geometry = geometry_of(plan, id, east_drop_m);
+    struct tile_drops drops;
+    struct tile_geometry geometry = tile_place_geometry(plan, id, &drops);
     begin(walk, id);
     for (int i = 0; i < 4; i++)
         if (children[i] != NULL) walk->max_error_m = fmax(walk->max_error_m, children[i]->max_error_m);
@@ -270,7 +197,7 @@ enum scree_status tile_build_hand_up(const struct tile_plan *plan, struct tile_w
     bool is_root = walk->id.zoom == 0;
     enum scree_status status = SCREE_OK;
     *coarse = NULL;
-    if (!is_root || walk->is_recorded) status = walk_to(plan, walk, coarsest_rung(walk->id), error);
+    if (!is_root || walk->is_recorded) status = walk_to(plan, walk, tile_coarsest_rung(walk->id), error);
     return status == SCREE_OK && !is_root ? tile_hand_up_new(&walk->tile, coarse, error) : status;
 }
 

@@ -8,20 +8,10 @@
 
 #include "lod/recorder.h"
 #include "lod/tile.h"
-#include "src/ladder.h"
-#include "src/raster_io.h"
 #include "src/scree_json.h"
 #include "src/terrain_tile.h"
+#include "src/tile_place.h"
 #include "src/tile_store_io.h"
-
-/* What is the same for all tiles of a build. */
-struct tile_plan {
-    const struct lattice *lattice;
-    const struct ladder *ladder;
-    double nodata_height_m;
-    bool no_normals, plain;
-    uint32_t rungs_per_increment; /* of streams; 0: 1 */
-};
 
 /* A tile on its way down its rungs. It must not move while it is recorded. */
 struct tile_walk {
