@@ -18,6 +18,7 @@ static const struct command {
     {"verify", command_verify, "check that a terrain keeps its promises"},
     {"info", command_info, "what is in a terrain or a tile"},
     {"extract", command_extract, "a terrain or tile as a mesh file at a scale you choose"},
+    {"remesh", command_remesh, "a raster as the mesh that an observer needs, from a quadtree"},
     {NULL, NULL, NULL},
 };
 
