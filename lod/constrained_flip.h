@@ -31,7 +31,7 @@ static inline uint32_t constrained_twin(const struct constrained *c, uint32_t ed
 }
 
 static inline bool constrained_is_fixed(const struct constrained *c, uint32_t edge) {
-    return (c->triangles[edge / 3].fixed >> edge % 3 & 1) != 0;
+    return (c->triangles[edge / 3].fixed & 1u << edge % 3) != 0;
 }
 
 /* The next half-edge that leaves the same point, counter-clockwise; CONSTRAINED_NONE beyond the border. */

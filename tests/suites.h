@@ -46,5 +46,6 @@ SUITE(stitch_build)
 SUITE(select)
 SUITE(playback)
 SUITE(player)
+SUITE(constrained)
 
 #undef SUITE
