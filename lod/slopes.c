@@ -78,11 +78,31 @@ static struct slope mix(struct slope a, struct slope b, float weight) {
     return (struct slope){a.east + (b.east - a.east) * weight, a.north + (b.north - a.north) * weight};
 }
 
-struct slope slope_grid_at(const struct slope_grid *grid, int32_t x, int32_t y) {
-    float right, up;
-    int32_t column = split(x, grid->node_span, grid->columns, &right), row = split(y, grid->node_span, grid->rows, &up);
+/* The slope within the cell of node (column, row), `right` and `up` cells from it. */
+static struct slope within(const struct slope_grid *grid, int32_t column, int32_t row, float right, float up) {
     int32_t next_column = right > 0 ? column + 1 : column, next_row = up > 0 ? row + 1 : row;
     struct slope low = mix(node(grid, column, row), node(grid, next_column, row), right);
     struct slope high = mix(node(grid, column, next_row), node(grid, next_column, next_row), right);
     return mix(low, high, up);
+}
+
+struct slope slope_grid_at(const struct slope_grid *grid, int32_t x, int32_t y) {
+    float right, up;
+    int32_t column = split(x, grid->node_span, grid->columns, &right), row = split(y, grid->node_span, grid->rows, &up);
+    return within(grid, column, row, right, up);
+}
+
+static int32_t split_between(double position, int32_t span, int32_t count, float *weight) {
+    int32_t at = (int32_t)(position / span);
+    *weight = (float)(position / span - at);
+    if (at < count - 1) return at;
+    *weight = 0;
+    return count - 1;
+}
+
+struct slope slope_grid_between(const struct slope_grid *grid, double x, double y) {
+    float right, up;
+    int32_t column = split_between(x, grid->node_span, grid->columns, &right);
+    int32_t row = split_between(y, grid->node_span, grid->rows, &up);
+    return within(grid, column, row, right, up);
 }

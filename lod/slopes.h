@@ -37,4 +37,7 @@ void slope_grid_place(const struct slope_grid *child, int32_t column, int32_t ro
 /* The slope at a lattice position, linear between the nodes; beyond the last node that of the last. */
 struct slope slope_grid_at(const struct slope_grid *grid, int32_t x, int32_t y);
 
+/* The same between lattice positions. */
+struct slope slope_grid_between(const struct slope_grid *grid, double x, double y);
+
 #endif

@@ -1,5 +1,6 @@
 #include "src/build.h"
 
+#include "src/methods.h"
 #include "src/stream_place.h"
 
 #include <math.h>
@@ -32,6 +33,22 @@ static enum scree_status choose_lattice(const struct build_options *options, con
     return SCREE_OK;
 }
 
+/* Whether the method's options are fine at every zoom is known before the first tile. */
+static enum scree_status check_method(const struct build_options *options, const struct build *build,
+                                      struct scree_error *error) {
+    double values[METHOD_MAX_OPTIONS];
+    enum scree_status status = SCREE_OK;
+    if (options->method == NULL) return SCREE_OK;
+    if (!options->no_stream)
+        return scree_fail(error, SCREE_E_ARGUMENT,
+                          "--method %s makes static tiles only, streams come from Scree's own way down; ask for "
+                          "--products terrain",
+                          options->method->method->name);
+    for (int zoom = options->min_zoom; zoom <= build->max_zoom && status == SCREE_OK; zoom++)
+        status = method_values_at(options->method, zoom, build->ladder.tolerance_m[zoom], values, error);
+    return status;
+}
+
 enum scree_status build_prepare(const struct build_options *options, struct build *build, struct scree_error *error) {
     enum scree_status status = raster_open(&options->raster, &build->raster, error);
     if (status != SCREE_OK) return status;
@@ -45,12 +62,13 @@ enum scree_status build_prepare(const struct build_options *options, struct buil
     if (options->raster.profile == PROFILE_GEODETIC) ladder.wall_m = fmax(highest_m - outside_m, outside_m - lowest_m);
     ladder.largest_height_m = fmax(fabs(lowest_m), fabs(highest_m));
     if ((status = ladder_make(&build->lattice, &ladder, &build->ladder, error)) != SCREE_OK) return status;
+    if ((status = check_method(options, build, error)) != SCREE_OK) return status;
     return raster_place(build->raster, &build->lattice, error);
 }
 
 /* Adds up the tiles of each zoom, in their order; SVO grows towards the root. */
-static void sum_up(struct build *build, int min_zoom) {
-    double finer_svo_m = 0;
+static void sum_up(struct build *build, int min_zoom, bool by_method) {
+    double finer_svo_m = 0, finer_tolerance_m = 0;
     for (int zoom = build->max_zoom; zoom >= min_zoom; zoom--) {
         const struct pyramid_zoom *level = &build->pyramid.zooms[zoom];
         struct layer_zoom *sum = &build->zooms[zoom];
@@ -69,12 +87,16 @@ static void sum_up(struct build *build, int min_zoom) {
         }
         sum->svo_m = fmax(finer_svo_m, sqrt(weighted_m2 / (double)(sum->vertices > 0 ? sum->vertices : 1)));
         finer_svo_m = sum->svo_m;
+        if (!by_method) continue;
+        /* what the method kept to, with the rounding of heights, whatever it was asked for */
+        sum->tolerance_m = fmax(finer_tolerance_m, sum->max_error_m + 0.5 * sum->height_step_m);
+        finer_tolerance_m = sum->tolerance_m;
     }
 }
 
 static enum scree_status finish_terrain(const struct build_options *options, struct build *build,
                                         struct tile_store *store, struct scree_error *error) {
-    sum_up(build, options->min_zoom);
+    sum_up(build, options->min_zoom, options->method != NULL);
     const struct raster_summary *summary = raster_summary(build->raster);
     struct layer layer = {.lattice = &build->lattice,
                           .min_zoom = options->min_zoom,
@@ -85,6 +107,7 @@ static enum scree_status finish_terrain(const struct build_options *options, str
                           .has_normals = !options->no_normals,
                           .is_gzipped = !options->plain,
                           .nodata_height_m = options->raster.nodata_height_m,
+                          .method = options->method != NULL ? options->method->method->name : NULL,
                           .zooms = build->zooms};
     memcpy(layer.bounds, summary->bounds, sizeof layer.bounds);
     char *text = layer_json_new(&layer, error);
@@ -159,6 +182,7 @@ enum scree_status build_run(const struct build_options *options, const struct py
     pyramid.no_normals = options->no_normals;
     pyramid.plain = options->plain;
     pyramid.rungs_per_increment = options->rungs_per_increment;
+    pyramid.method = options->method;
     pyramid.threads = options->threads;
     pyramid.terrain = terrain;
     pyramid.stream = stream;

@@ -10,14 +10,17 @@
 
 #define ZOOM_FROM_SOURCE (-1)
 
+struct method_choice;
+
 struct build_options {
     struct raster_options raster;
     const char *out;
     int min_zoom, max_zoom; /* max_zoom: ZOOM_FROM_SOURCE or a zoom */
     struct ladder_options ladder;
-    bool no_terrain, no_stream;   /* products that are not written; what is there of them already is left alone */
-    bool no_normals, plain;       /* of terrain */
-    uint32_t rungs_per_increment; /* of streams; 0: 1 */
+    bool no_terrain, no_stream;         /* products that are not written; what is there of them already is left alone */
+    bool no_normals, plain;             /* of terrain */
+    uint32_t rungs_per_increment;       /* of streams; 0: 1 */
+    const struct method_choice *method; /* of the literature, for terrain alone; NULL: Scree's own way */
     int threads;
 };
 

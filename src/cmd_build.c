@@ -1,6 +1,7 @@
 /* scree build: elevation in, crack-free terrain out. */
 #include "src/build.h"
 #include "src/command.h"
+#include "src/methods.h"
 #include "src/progress_io.h"
 #include "src/raster_arguments.h"
 
@@ -33,6 +34,9 @@ static const char help[] =
     "  --lossless           streams end with every post; heights that are no multiple of the heights' step, which\n"
     "                       is a power of two of at most 1 m, are rounded to it\n"
     "  --rungs-per-increment N   rungs that each increment of a stream spans, default 1\n"
+    "  --method NAME        static tiles by a method of the literature, without streams; list names them all\n"
+    "  --method-option NAME=VALUE   an option of it: 50, a list by zoom 0:50,5:20, or 400/2 or 4*2, which halve or\n"
+    "                       double from zoom 0 on; may be given for several\n"
     "  --no-normals         leave out the octvertexnormals extension\n"
     "  --plain              no gzip: for servers that do not send Content-Encoding\n"
     "  -j N                 threads, default all cores\n"
@@ -42,7 +46,10 @@ static const char help[] =
 struct arguments {
     struct build_options build;
     const char **inputs;
-    bool quiet;
+    const char *method_name, **method_settings;
+    int method_setting_count;
+    struct method_choice method;
+    bool has_products, lists_methods, quiet;
 };
 
 static volatile sig_atomic_t stop_asked;
@@ -117,6 +124,36 @@ static const char *take_valued(const char *name, const char *value, struct build
     return "";
 }
 
+/* Methods and their options are looked at when all are there; false when it is neither, or there is no value. */
+static bool take_method(const char *name, const char *value, struct arguments *arguments) {
+    bool is_option = strcmp(name, "--method-option") == 0;
+    if (value == NULL || (!is_option && strcmp(name, "--method") != 0)) return false;
+    if (is_option)
+        arguments->method_settings[arguments->method_setting_count++] = value;
+    else
+        arguments->method_name = value;
+    return true;
+}
+
+static int choose_method(struct arguments *arguments) {
+    struct scree_error error = {0};
+    const char *name = arguments->method_name;
+    if (name == NULL && arguments->method_setting_count > 0)
+        return usage("which method? Name it with --method, for --method-option ", arguments->method_settings[0]);
+    if (name == NULL) return EXIT_DONE;
+    arguments->lists_methods = strcmp(name, "list") == 0;
+    if (arguments->lists_methods) return EXIT_DONE;
+    enum scree_status status = method_choose(name, &arguments->method, &error);
+    for (int i = 0; i < arguments->method_setting_count && status == SCREE_OK; i++)
+        status = method_set(&arguments->method, arguments->method_settings[i], &error);
+    if (status != SCREE_OK) return usage(error.text, "");
+    arguments->build.method = &arguments->method;
+    if (!arguments->has_products) arguments->build.no_stream = true;
+    if (!arguments->build.no_stream)
+        return usage("a method makes static tiles only: ask for --products terrain with --method ", name);
+    return EXIT_DONE;
+}
+
 /* One argument that is not about reading rasters; EXIT_DONE or the code to exit with. */
 static int take(int argc, char **argv, int *at, struct arguments *arguments) {
     const char *name = argv[(*at)++], *value = *at < argc ? argv[*at] : NULL;
@@ -138,8 +175,11 @@ static int take(int argc, char **argv, int *at, struct arguments *arguments) {
         const char *wanted = take_valued("-j", name + 2, &arguments->build);
         return wanted == NULL ? EXIT_DONE : usage(wanted, name + 2);
     }
+    if (strncmp(name, "--method", 8) == 0 && take_method(name, value, arguments)) return ++*at, EXIT_DONE;
+    if (strcmp(name, "--products") == 0) arguments->has_products = true;
     const char *wanted = take_valued(name, value != NULL ? value : "", &arguments->build);
-    if (wanted != NULL && wanted[0] == '\0') return usage("there is no option ", name);
+    bool is_method = strcmp(name, "--method") == 0 || strcmp(name, "--method-option") == 0;
+    if (wanted != NULL && wanted[0] == '\0' && !is_method) return usage("there is no option ", name);
     if (value == NULL) return usage("a value is missing behind ", name);
     if (wanted != NULL) return usage(wanted, value);
     ++*at;
@@ -155,6 +195,8 @@ static int parse(int argc, char **argv, struct arguments *arguments) {
         int code = take(argc, argv, &at, arguments);
         if (code != EXIT_DONE) return code;
     }
+    int code = choose_method(arguments);
+    if (code != EXIT_DONE || arguments->lists_methods) return code;
     if (arguments->build.raster.input_count == 0) return usage("which DEM? Name one raster or several", "");
     if (arguments->build.out == NULL) return usage("where to? Name a folder with -o", "");
     arguments->build.raster.inputs = arguments->inputs;
@@ -204,6 +246,15 @@ static void print_result(const struct build *build, const struct build_options *
     printf("%s: %.1f s, %.2f million posts a second\n", options->out, seconds, posts * 1e-6 / seconds);
 }
 
+static void print_methods(void) {
+    for (const struct method *method = method_table; method->name != NULL; method++) {
+        printf("%s: %s\n", method->name, method->what);
+        for (int i = 0; i < method->option_count; i++)
+            printf("    %-8s %s (%g to %g)\n", method->options[i].name, method->options[i].what,
+                   method->options[i].least, method->options[i].most);
+    }
+}
+
 static int run(const struct arguments *arguments) {
     struct scree_error error = {0};
     struct build build = {0};
@@ -234,17 +285,24 @@ int command_build(int argc, char **argv) {
         .build = {.max_zoom = ZOOM_FROM_SOURCE, .ladder = {.finest_octaves = DEFAULT_FINEST_OCTAVES}}};
     arguments.build.threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
     if (arguments.build.threads < 1) arguments.build.threads = 1;
-    if ((arguments.inputs = calloc((size_t)argc, sizeof *arguments.inputs)) == NULL) {
+    arguments.inputs = calloc((size_t)argc, sizeof *arguments.inputs);
+    arguments.method_settings = calloc((size_t)argc, sizeof *arguments.method_settings);
+    int code = EXIT_FAILED;
+    if (arguments.inputs == NULL || arguments.method_settings == NULL) {
         fprintf(stderr, "scree build: no memory for the arguments\n");
-        return EXIT_FAILED;
+        goto cleanup;
     }
-    int code = parse(argc, argv, &arguments);
-    if (code == EXIT_DONE) {
+    if ((code = parse(argc, argv, &arguments)) != EXIT_DONE) goto cleanup;
+    if (arguments.lists_methods) {
+        print_methods();
+    } else {
         struct sigaction action = {.sa_handler = ask_to_stop, .sa_flags = SA_RESETHAND}; /* a second one kills */
         sigaction(SIGINT, &action, NULL);
         sigaction(SIGTERM, &action, NULL);
         code = run(&arguments);
     }
+cleanup:
+    free(arguments.method_settings);
     free(arguments.inputs);
     return code;
 }

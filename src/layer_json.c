@@ -65,6 +65,8 @@ static void put_scree(struct json_text *json, const struct layer *layer) {
     json_number(json, layer->nodata_height_m);
     json_key(json, "gzip");
     json_boolean(json, layer->is_gzipped);
+    if (layer->method != NULL) json_key(json, "method");
+    if (layer->method != NULL) json_string(json, layer->method);
     put_zooms(json, layer);
     json_close(json, '}');
 }

@@ -27,6 +27,7 @@ struct layer {
     const char *crs_wkt, *datum, *attribution;
     bool has_normals, is_gzipped;
     double nodata_height_m;
+    const char *method;             /* of the literature; NULL: Scree's own way */
     const struct layer_zoom *zooms; /* indexed by zoom, 0 .. max_zoom */
 };
 

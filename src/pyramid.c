@@ -1,5 +1,6 @@
 #include "src/pyramid.h"
 
+#include "src/method_build.h"
 #include "src/tile_build.h"
 
 #include <pthread.h>
@@ -8,13 +9,19 @@
 
 #define JOBS_A_THREAD 8 /* subtrees, so that threads end together */
 
+/* What a tile leaves to its parent: one of these, or none in case of a root. */
+struct handed {
+    struct coarse_tile *mesh;
+    struct post_tile *posts; /* where a method of the literature makes the meshes */
+};
+
 /* A tile at or above the zoom where the work is cut into jobs. Its memory belongs to whoever works on it: first its
- * own worker, then, by way of `coarse`, that of its parent. */
+ * own worker, then, by way of `handed`, that of its parent. */
 struct node {
     struct tile_id id;
     uint32_t waiting; /* children that are not done yet; under the lock */
     struct scree_memory memory;
-    struct coarse_tile *coarse;
+    struct handed handed;
 };
 
 struct work {
@@ -110,6 +117,12 @@ static enum scree_status list_streams(const struct pyramid_options *options, str
 
 /* ---- tiles ---- */
 
+static void handed_free(struct scree_memory *memory, struct handed *handed) {
+    coarse_tile_free(memory, handed->mesh);
+    post_tile_free(handed->posts);
+    *handed = (struct handed){NULL, NULL};
+}
+
 static bool stopped(struct work *work) {
     pthread_mutex_lock(&work->lock);
     bool stop = work->failed;
@@ -139,7 +152,7 @@ static enum scree_status finish_stream(struct work *work, struct tile_walk *walk
 }
 
 /* Writes what is wanted of a tile that has come to the rung of its zoom, takes it on and hands it up. */
-static enum scree_status finish_tile(struct work *work, struct tile_walk *walk, struct coarse_tile **coarse,
+static enum scree_status finish_tile(struct work *work, struct tile_walk *walk, struct handed *handed,
                                      struct scree_error *error) {
     const struct pyramid_options *options = work->options;
     struct pyramid_zoom *level = &work->pyramid->zooms[walk->id.zoom];
@@ -147,7 +160,7 @@ static enum scree_status finish_tile(struct work *work, struct tile_walk *walk, 
     enum scree_status status = SCREE_OK;
     if (is_written(work, walk->id) && options->terrain != NULL)
         status = tile_build_write(&work->plan, walk, options->terrain, &level->statistics[index], error);
-    if (status == SCREE_OK) status = tile_build_hand_up(&work->plan, walk, coarse, error);
+    if (status == SCREE_OK) status = tile_build_hand_up(&work->plan, walk, &handed->mesh, error);
     if (status == SCREE_OK && walk->is_recorded) status = finish_stream(work, walk, error);
     tile_walk_release(walk);
     return status;
@@ -157,34 +170,78 @@ static bool is_recorded(const struct work *work, struct tile_id id) {
     return work->options->stream != NULL && is_written(work, id);
 }
 
-static enum scree_status parent_from(struct work *work, struct tile_id id, struct coarse_tile *const children[4],
-                                     struct scree_memory *memory, struct coarse_tile **coarse,
-                                     struct scree_error *error) {
+/* The same of a tile that a method triangulates. */
+static enum scree_status finish_posts(struct work *work, struct tile_id id, struct post_tile *tile,
+                                      struct handed *handed, struct scree_error *error) {
+    const struct pyramid_options *options = work->options;
+    struct pyramid_zoom *level = &work->pyramid->zooms[id.zoom];
+    enum scree_status status = SCREE_OK;
+    if (is_written(work, id) && options->terrain != NULL)
+        status = method_build_write(&work->plan, id, tile, options->terrain,
+                                    &level->statistics[tile_list_find(&level->tiles, id)], error);
+    if (status == SCREE_OK && id.zoom > 0) status = method_build_hand_up(&work->plan, id, tile, &handed->posts, error);
+    post_tile_release(tile);
+    return status;
+}
+
+static enum scree_status parent_from(struct work *work, struct tile_id id, const struct handed children[4],
+                                     struct scree_memory *memory, struct handed *handed, struct scree_error *error) {
+    enum scree_status status;
+    if (work->plan.method != NULL) {
+        struct post_tile tile;
+        const struct post_tile *views[4];
+        for (int child = 0; child < 4; child++) views[child] = children[child].posts;
+        status = method_build_parent(&work->plan, id, views, memory, &tile, error);
+        return status == SCREE_OK ? finish_posts(work, id, &tile, handed, error) : status;
+    }
     struct tile_walk walk;
-    const struct coarse_tile *views[4] = {children[0], children[1], children[2], children[3]};
-    enum scree_status status = tile_build_parent(&work->plan, id, views, is_recorded(work, id), memory, &walk, error);
-    return status == SCREE_OK ? finish_tile(work, &walk, coarse, error) : status;
+    const struct coarse_tile *views[4];
+    for (int child = 0; child < 4; child++) views[child] = children[child].mesh;
+    status = tile_build_parent(&work->plan, id, views, is_recorded(work, id), memory, &walk, error);
+    return status == SCREE_OK ? finish_tile(work, &walk, handed, error) : status;
+}
+
+static enum scree_status make_finest(struct worker *worker, struct tile_id id, struct scree_memory *memory,
+                                     struct handed *handed, struct scree_error *error) {
+    struct work *work = worker->work;
+    enum scree_status status;
+    if (work->plan.method != NULL) {
+        struct post_tile tile;
+        status = method_build_finest(&work->plan, id, worker->reader, memory, &tile, error);
+        return status == SCREE_OK ? finish_posts(work, id, &tile, handed, error) : status;
+    }
+    struct tile_walk walk;
+    status = tile_build_finest(&work->plan, id, worker->reader, is_recorded(work, id), memory, &walk, error);
+    return status == SCREE_OK ? finish_tile(work, &walk, handed, error) : status;
 }
 
 static enum scree_status finest_tile(struct worker *worker, struct tile_id id, struct scree_memory *memory,
-                                     struct coarse_tile **coarse, struct scree_error *error) {
-    struct work *work = worker->work;
-    struct tile_walk walk;
-    enum scree_status status =
-        tile_build_finest(&work->plan, id, worker->reader, is_recorded(work, id), memory, &walk, error);
-    if (status == SCREE_OK) status = finish_tile(work, &walk, coarse, error);
-    tell_progress(work);
+                                     struct handed *handed, struct scree_error *error) {
+    enum scree_status status = make_finest(worker, id, memory, handed, error);
+    tell_progress(worker->work);
+    return status;
+}
+
+static enum scree_status level_posts(struct work *work, struct tile_id id, struct scree_memory *memory,
+                                     struct handed *handed, struct scree_error *error) {
+    struct post_tile tile;
+    enum scree_status status = method_build_level(&work->plan, id, memory, &tile, error);
+    if (status != SCREE_OK || id.zoom == 0)
+        return status == SCREE_OK ? finish_posts(work, id, &tile, handed, error) : status;
+    status = method_build_hand_up(&work->plan, id, &tile, &handed->posts, error);
+    post_tile_release(&tile);
     return status;
 }
 
 /* A tile that no data touch: a stream for its parent's sake, and static only as a root. */
 static enum scree_status level_tile(struct work *work, struct tile_id id, struct scree_memory *memory,
-                                    struct coarse_tile **coarse, struct scree_error *error) {
+                                    struct handed *handed, struct scree_error *error) {
     struct tile_walk walk;
+    if (work->plan.method != NULL) return level_posts(work, id, memory, handed, error);
     enum scree_status status = tile_build_level(&work->plan, id, is_recorded(work, id), memory, &walk, error);
     if (status != SCREE_OK) return status;
-    if (id.zoom == 0) return finish_tile(work, &walk, coarse, error);
-    status = tile_build_hand_up(&work->plan, &walk, coarse, error);
+    if (id.zoom == 0) return finish_tile(work, &walk, handed, error);
+    status = tile_build_hand_up(&work->plan, &walk, &handed->mesh, error);
     if (status == SCREE_OK && walk.is_recorded) status = finish_stream(work, &walk, error);
     tile_walk_release(&walk);
     return status;
@@ -192,18 +249,18 @@ static enum scree_status level_tile(struct work *work, struct tile_id id, struct
 
 /* A tile with all that lies below it. */
 static enum scree_status subtree(struct worker *worker, struct tile_id id, struct scree_memory *memory,
-                                 struct coarse_tile **coarse, struct scree_error *error) {
+                                 struct handed *handed, struct scree_error *error) {
     struct work *work = worker->work;
     enum scree_status status = SCREE_OK;
-    struct coarse_tile *children[4] = {NULL, NULL, NULL, NULL};
+    struct handed children[4] = {{NULL, NULL}};
     if (stopped(work)) return scree_fail(error, SCREE_E_INTERRUPTED, "interrupted");
-    if (!touched(work->options, id)) return level_tile(work, id, memory, coarse, error);
-    if (id.zoom == work->options->lattice->finest_zoom) return finest_tile(worker, id, memory, coarse, error);
+    if (!touched(work->options, id)) return level_tile(work, id, memory, handed, error);
+    if (id.zoom == work->options->lattice->finest_zoom) return finest_tile(worker, id, memory, handed, error);
     for (int child = 0; child < 4 && status == SCREE_OK; child++)
         if (in_lattice(work->options, child_of(id, child)))
             status = subtree(worker, child_of(id, child), memory, &children[child], error);
-    if (status == SCREE_OK) status = parent_from(work, id, children, memory, coarse, error);
-    for (int child = 0; child < 4; child++) coarse_tile_free(memory, children[child]);
+    if (status == SCREE_OK) status = parent_from(work, id, children, memory, handed, error);
+    for (int child = 0; child < 4; child++) handed_free(memory, &children[child]);
     return status;
 }
 
@@ -216,7 +273,7 @@ static struct node *node_of(const struct work *work, struct tile_id id) {
 
 /* A tile above the jobs whose children are all done; those without data are made here. */
 static enum scree_status upper_tile(struct work *work, struct node *node, struct scree_error *error) {
-    struct coarse_tile *children[4] = {NULL, NULL, NULL, NULL};
+    struct handed children[4] = {{NULL, NULL}};
     struct node *owners[4] = {NULL, NULL, NULL, NULL};
     enum scree_status status = SCREE_OK;
     for (int child = 0; child < 4 && status == SCREE_OK; child++) {
@@ -224,14 +281,14 @@ static enum scree_status upper_tile(struct work *work, struct node *node, struct
         if (!in_lattice(work->options, id)) continue;
         owners[child] = node_of(work, id);
         if (owners[child] != NULL)
-            children[child] = owners[child]->coarse;
+            children[child] = owners[child]->handed;
         else
             status = level_tile(work, id, &node->memory, &children[child], error);
     }
-    if (status == SCREE_OK) status = parent_from(work, node->id, children, &node->memory, &node->coarse, error);
+    if (status == SCREE_OK) status = parent_from(work, node->id, children, &node->memory, &node->handed, error);
     for (int child = 0; child < 4; child++) {
-        coarse_tile_free(owners[child] != NULL ? &owners[child]->memory : &node->memory, children[child]);
-        if (owners[child] != NULL) owners[child]->coarse = NULL;
+        handed_free(owners[child] != NULL ? &owners[child]->memory : &node->memory, &children[child]);
+        if (owners[child] != NULL) owners[child]->handed = (struct handed){NULL, NULL};
     }
     return status;
 }
@@ -266,7 +323,7 @@ static void *run_worker(void *argument) {
     struct worker *worker = argument;
     for (struct node *job = next_job(worker->work); job != NULL; job = next_job(worker->work)) {
         struct scree_error error = {0};
-        enum scree_status status = subtree(worker, job->id, &job->memory, &job->coarse, &error);
+        enum scree_status status = subtree(worker, job->id, &job->memory, &job->handed, &error);
         for (struct node *node = job; status == SCREE_OK;) {
             if ((node = parent_that_is_ready(worker->work, node)) == NULL) break;
             status = upper_tile(worker->work, node, &error);
@@ -329,7 +386,7 @@ static enum scree_status level_roots(struct work *work, struct scree_error *erro
     enum scree_status status = SCREE_OK;
     for (uint32_t i = 0; work->job_zoom > 0 && i < work->pyramid->zooms[0].tiles.count && status == SCREE_OK; i++) {
         struct node *node = &work->nodes[0][i];
-        if (!touched(work->options, node->id)) status = level_tile(work, node->id, &node->memory, &node->coarse, error);
+        if (!touched(work->options, node->id)) status = level_tile(work, node->id, &node->memory, &node->handed, error);
     }
     return status;
 }
@@ -360,7 +417,7 @@ static void release_work(struct work *work) {
     struct scree_memory *memory = &work->pyramid->memory;
     for (int zoom = 0; zoom <= work->job_zoom; zoom++) {
         for (uint32_t i = 0; work->nodes[zoom] != NULL && i < work->pyramid->zooms[zoom].tiles.count; i++)
-            coarse_tile_free(&work->nodes[zoom][i].memory, work->nodes[zoom][i].coarse);
+            handed_free(&work->nodes[zoom][i].memory, &work->nodes[zoom][i].handed);
         scree_release(memory, work->nodes[zoom]);
     }
     scree_release(memory, work->order);
@@ -373,7 +430,7 @@ enum scree_status pyramid_build(const struct pyramid_options *options, struct py
     struct work work = {.options = options,
                         .pyramid = pyramid,
                         .plan = {options->lattice, options->ladder, options->nodata_height_m, options->no_normals,
-                                 options->plain, options->rungs_per_increment}};
+                                 options->plain, options->rungs_per_increment, options->method}};
     memset(pyramid, 0, sizeof *pyramid);
     if (pthread_mutex_init(&work.lock, NULL) != 0) return scree_fail(error, SCREE_E_LIMIT, "no lock can be made");
     for (int zoom = 0; zoom <= options->lattice->finest_zoom && status == SCREE_OK; zoom++)

@@ -15,6 +15,8 @@
 #include <scree/error.h>
 #include <signal.h>
 
+struct method_choice;
+
 /* The tiles of a zoom that the data touch (and, at zoom 0, every root). Streams also have the tiles beside these that
  * share a parent with them: a viewer that replaces a tile by its children shall find all of them. */
 struct pyramid_zoom {
@@ -32,6 +34,7 @@ struct pyramid_options {
     bool no_normals, plain; /* without octvertexnormals; without gzip */
     int threads;            /* at least 1 */
     uint32_t rungs_per_increment;
+    const struct method_choice *method;  /* of the literature, that makes the static tiles; NULL: Scree's own way */
     struct tile_store *terrain, *stream; /* the products that are wanted; the others are NULL */
     const volatile sig_atomic_t *stop;   /* set from outside: give up; may be NULL */
     /* called under a lock, with the number of tiles of the finest zoom that are done */

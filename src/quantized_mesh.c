@@ -31,6 +31,7 @@ struct encoding {
     struct scree_error *error;
     struct lattice_window window;
     int64_t span;
+    int32_t east, north;         /* positions of the borders, as the mesh counts them */
     double bounds[4];            /* of the whole tile: west, south, east, north */
     const uint32_t *old_corners; /* the mesh's, or `patched` */
     uint32_t *patched;
@@ -58,7 +59,7 @@ static const struct scree_vertex *old_vertex(const struct encoding *e, uint32_t 
 }
 
 static bool is_on_border(const struct encoding *e, const struct scree_vertex *vertex) {
-    return vertex->x == 0 || vertex->y == 0 || vertex->x == e->window.columns || vertex->y == e->window.rows;
+    return vertex->x == 0 || vertex->y == 0 || vertex->x == e->east || vertex->y == e->north;
 }
 
 static enum scree_status refuse(const struct encoding *e, enum scree_status status, const char *why) {
@@ -77,7 +78,7 @@ static enum scree_status check_mesh(const struct encoding *e) {
         return refuse(e, SCREE_E_LIMIT, "has more vertices or triangles than can be written");
     for (uint32_t i = 0; i < mesh->vertex_count; i++) {
         const struct scree_vertex *vertex = &mesh->vertices[i];
-        if (vertex->x < 0 || vertex->y < 0 || vertex->x > e->window.columns || vertex->y > e->window.rows)
+        if (vertex->x < 0 || vertex->y < 0 || vertex->x > e->east || vertex->y > e->north)
             return refuse(e, SCREE_E_ARGUMENT, "has a vertex outside of its window");
     }
     for (size_t c = 0; c < 3 * (size_t)mesh->triangle_count; c++)
@@ -209,8 +210,8 @@ static enum scree_status make_codes(struct encoding *e) {
         const struct scree_vertex *vertex = old_vertex(e, i);
         int64_t rise = round_height(vertex->height, is_on_border(e, vertex) ? coarsest : e->step_shift) - e->minimum;
         e->codes[i] = (struct code){
-            .u = position_code(vertex->x, e->span),
-            .v = position_code(vertex->y, e->span),
+            .u = e->tile->is_coded ? vertex->x : position_code(vertex->x, e->span),
+            .v = e->tile->is_coded ? vertex->y : position_code(vertex->y, e->span),
             .height = (int32_t)(e->step_shift >= 0 ? rise >> e->step_shift : rise << -e->step_shift),
         };
     }
@@ -303,8 +304,8 @@ static bool is_on_side(const struct encoding *e, const struct scree_vertex *vert
     switch (side) {
     case WEST: return vertex->x == 0;
     case SOUTH: return vertex->y == 0;
-    case EAST: return vertex->x == e->window.columns;
-    default: return vertex->y == e->window.rows;
+    case EAST: return vertex->x == e->east;
+    default: return vertex->y == e->north;
     }
 }
 
@@ -472,6 +473,8 @@ enum scree_status quantized_mesh_encode_new(struct scree_memory *memory, const s
     struct encoding e = {.memory = memory, .tile = tile, .error = error != NULL ? error : &own};
     e.window = lattice_tile_window(tile->lattice, tile->id);
     e.span = lattice_tile_span(tile->lattice, tile->id.zoom);
+    e.east = tile->is_coded ? position_code(e.window.columns, e.span) : e.window.columns;
+    e.north = tile->is_coded ? position_code(e.window.rows, e.span) : e.window.rows;
     lattice_tile_bounds(tile->lattice, tile->id, e.bounds);
     enum scree_status status = check_mesh(&e);
     if (status == SCREE_OK) status = order_mesh(&e);

@@ -4,11 +4,13 @@
 
 #include "src/lattice.h"
 #include <scree/mesh.h>
+#include <stdbool.h>
 
 struct terrain_tile {
     const struct lattice *lattice;
     struct tile_id id;
     const struct scree_mesh *mesh; /* lattice steps from the tile's south-western corner */
+    bool is_coded;                 /* not steps: position codes already (lod/position_code.h) */
     const float *slopes;           /* 2 a vertex: dh/deast, dh/dnorth (metres a metre); NULL: no normals */
     double height_unit_m;          /* a power of two; what the mesh's heights count */
     int32_t border_step;           /* height units, a power of two: border heights are written as multiples of it */
