@@ -71,7 +71,8 @@ osg::ref_ptr<TerrainNode> TerrainNode::open(const std::string &path, const Terra
     node->inside.reset(new Inside(std::move(manifest), options));
     Inside &inside = *node->inside;
     if (!inside.set.open(error)) return nullptr;
-    inside.world.set_heights(inside.set.terrain().lowest_m, inside.set.terrain().highest_m);
+    std::pair<double, double> heights_m = inside.set.data_heights_m();
+    inside.world.set_heights(heights_m.first, heights_m.second);
     inside.state = terrain_state(options.glsl, inside.world, texture);
     return node;
 }

@@ -58,10 +58,11 @@ uniform vec4 scree_colour; // of the tile; w 0: none
 uniform bool scree_is_tinted, scree_is_textured;
 uniform sampler2D scree_texture;
 uniform vec2 scree_range; // of the heights that are land
+uniform bool scree_has_sea; // below 0
 uniform float scree_contour; // metres from line to line; 0: none
 vec3 tint(float at) {
-    if (at < scree_range.x) // sea floor
-        return mix(vec3(0.62, 0.78, 0.86), vec3(0.10, 0.24, 0.45), clamp((scree_range.x - at) / 4000.0, 0.0, 1.0));
+    if (scree_has_sea && at < 0.0)
+        return mix(vec3(0.62, 0.78, 0.86), vec3(0.10, 0.24, 0.45), clamp(-at / 4000.0, 0.0, 1.0));
     float part = clamp((at - scree_range.x) / (scree_range.y - scree_range.x), 0.0, 1.0) * 4.0;
     vec3 low = vec3(0.47, 0.62, 0.42), plain = vec3(0.71, 0.77, 0.52), hill = vec3(0.86, 0.79, 0.58);
     vec3 rock = vec3(0.72, 0.58, 0.46), top = vec3(0.95, 0.94, 0.92);
@@ -72,8 +73,10 @@ vec3 tint(float at) {
 }
 void main() {
     vec3 colour = vec3(0.78, 0.76, 0.72);
-    if (scree_is_tinted) colour = tint(height);
-    if (scree_is_textured) {
+    // beyond the data's bounds there is ground at a stated height, and nothing to tell of it
+    bool is_data = all(greaterThan(map, vec2(0.0))) && all(lessThan(map, vec2(1.0)));
+    if (scree_is_tinted) colour = is_data ? tint(height) : vec3(0.52, 0.57, 0.60);
+    if (scree_is_textured && is_data) {
         vec4 image = texture(scree_texture, map);
         colour = mix(colour, image.rgb, image.a);
     }
@@ -90,6 +93,7 @@ void main() {
 )";
 
 constexpr int TEXTURE_UNIT = 0;
+constexpr double SEA_M = -100; // lower depths than any dry land's are a sea's
 
 osg::Program *program_new(int glsl) {
     osg::Program *program = new osg::Program;
@@ -126,8 +130,9 @@ osg::ref_ptr<osg::StateSet> terrain_state(int glsl, const TerrainWorld &world, o
     sun.normalize();
     state->addUniform(new osg::Uniform("scree_sun", sun));
     state->addUniform(new osg::Uniform("scree_texture", TEXTURE_UNIT));
-    // depths below -100 m are a sea's; the tint of land begins at 0 then
-    double lowest_m = world.lowest_m() < -100 ? std::min(0.0, world.highest_m() - 1) : world.lowest_m();
+    bool has_sea = world.lowest_m() < SEA_M;
+    double lowest_m = has_sea ? 0 : world.lowest_m();
+    state->addUniform(new osg::Uniform("scree_has_sea", has_sea));
     state->addUniform(
         new osg::Uniform("scree_range", osg::Vec2((float)lowest_m, (float)std::max(world.highest_m(), lowest_m + 1))));
     if (texture != nullptr) {

@@ -10,6 +10,8 @@ namespace {
 constexpr uint32_t RUNGS_AHEAD = 4;                   // an octave: what has to be decoded again is then little
 constexpr uint64_t BYTES_A_TRIANGLE = 200;            // of memory, measured
 constexpr uint64_t BYTES_A_BASE = 1u << 17;           // of a tile of which nothing is known yet
+constexpr size_t BYTES_A_FRAME = 1u << 20;            // to the graphics card, for tiles that have come
+constexpr std::ptrdiff_t DATA_TILES = 16;             // so many are read to learn the heights
 constexpr double LOWEST_M = -12000, HIGHEST_M = 9000; // until the roots have told
 
 MeshWorld world_of(const Manifest &manifest) {
@@ -78,6 +80,29 @@ bool TerrainSet::open(std::string *error) {
     return true;
 }
 
+std::pair<double, double> TerrainSet::data_heights_m() {
+    int32_t zoom = tiles.front().id.zoom;
+    auto count_of = [this](int32_t at) {
+        return std::count_if(tiles.begin(), tiles.end(),
+                             [at](const scree_select_tile &one) { return one.id.zoom == at; });
+    };
+    while (zoom < tiles.back().id.zoom && count_of(zoom + 1) <= DATA_TILES) zoom++;
+    double lowest_m = HUGE_VAL, highest_m = -HUGE_VAL;
+    for (uint32_t i = 0; i < tile_count(); i++) {
+        if (tiles[i].id.zoom != zoom) continue;
+        LoadedTile tile = load_tile({i, 1, manifest.path_of(tiles[i].id)}, world);
+        if (tile.mesh == nullptr) continue;
+        for (const TileVertex &vertex : tile.mesh->vertices) {
+            bool is_inside = vertex.map[0] > 0 && vertex.map[0] < 65535 && vertex.map[1] > 0 && vertex.map[1] < 65535;
+            if (!is_inside) continue;
+            lowest_m = std::min(lowest_m, (double)vertex.height_m);
+            highest_m = std::max(highest_m, (double)vertex.height_m);
+        }
+    }
+    if (lowest_m > highest_m) return {manifest.terrain.lowest_m, manifest.terrain.highest_m};
+    return {lowest_m, highest_m};
+}
+
 // ---- what has come ----
 
 void TerrainSet::keep_heights(uint32_t tile, const TileMesh &mesh) {
@@ -104,9 +129,20 @@ void TerrainSet::take(LoadedTile loaded) {
     keep_heights(tile, *held[tile].mesh);
 }
 
+// What the frame that takes it sends to the graphics card: as much as is drawn of the tile now.
+size_t TerrainSet::bytes_to_send(const LoadedTile &loaded) const {
+    const TileMesh *now = held[loaded.tile].mesh.get();
+    if (now == nullptr || loaded.mesh == nullptr || held[loaded.tile].last_frame + 1 < frame_number) return 0;
+    return now->vertex_count() * sizeof(TileVertex) + 3 * sizeof(uint32_t) * now->triangle_count();
+}
+
 void TerrainSet::take_arrivals() {
     if (loaders == nullptr) return;
-    for (LoadedTile &loaded : loaders->take()) take(std::move(loaded));
+    for (LoadedTile &loaded : loaders->take()) arrived.push_back(std::move(loaded));
+    for (size_t bytes = 0; !arrived.empty() && bytes < BYTES_A_FRAME; arrived.pop_front()) {
+        bytes += bytes_to_send(arrived.front());
+        take(std::move(arrived.front()));
+    }
 }
 
 // ---- what is drawn ----
@@ -131,6 +167,8 @@ void TerrainSet::choose(const scree_view &view, const TerrainSettings &settings)
         selection.drawn_count = selection.wanted_count = 0;
     }
     told.tolerance_px = selection.tolerance_px;
+    if (!settings.morph) // whole rungs
+        for (uint32_t i = 0; i < selection.drawn_count; i++) selected[i].level = selected[i].rung;
 }
 
 void TerrainSet::seek() {
@@ -242,7 +280,9 @@ void TerrainSet::request(const TerrainSettings &settings) {
     auto ask = [&](uint32_t tile, uint32_t rungs) {
         const scree_stream_header *header = tiles[tile].header;
         if (header != nullptr) rungs = std::min(rungs, header->rung_count);
-        if (is_final[tile] || rungs <= tiles[tile].rungs_ready) return;
+        bool has_come =
+            std::any_of(arrived.begin(), arrived.end(), [&](const LoadedTile &one) { return one.tile == tile; });
+        if (is_final[tile] || has_come || rungs <= tiles[tile].rungs_ready) return;
         uint64_t bytes = header == nullptr ? BYTES_A_BASE : BYTES_A_TRIANGLE * header->rungs[rungs - 1].triangle_count;
         if (bytes > room) return;
         room -= bytes;
@@ -300,5 +340,5 @@ bool TerrainSet::is_settled() const {
     if (is_first || !cut->is_still()) return false;
     bool lacks = false;
     for (uint32_t i = 0; i < selection.wanted_count; i++) lacks = lacks || !is_final[wanted[i].tile];
-    return !lacks && (loaders == nullptr || loaders->is_idle());
+    return !lacks && arrived.empty() && (loaders == nullptr || loaders->is_idle());
 }

@@ -20,6 +20,9 @@ class TerrainSet {
     // Loads the roots. False, and one line in `error`, when they cannot be had.
     bool open(std::string *error);
 
+    // Lowest and highest height of the data, from the coarsest meshes that show more than a corner of them.
+    std::pair<double, double> data_heights_m();
+
     // One frame: takes what has been loaded, chooses, moves what is drawn towards it, stitches, asks for more.
     void frame(const scree_view &view, const TerrainSettings &settings, double seconds);
 
@@ -42,6 +45,7 @@ class TerrainSet {
         size_t bytes = 0;
     };
     void take(LoadedTile loaded);
+    size_t bytes_to_send(const LoadedTile &loaded) const;
     void take_arrivals();
     void keep_heights(uint32_t tile, const TileMesh &mesh);
     void choose(const scree_view &view, const TerrainSettings &settings);
@@ -73,6 +77,7 @@ class TerrainSet {
     bool was_stitched = true, is_first = true;
     uint64_t frame_number = 0;
     TerrainFigures told;
+    std::deque<LoadedTile> arrived;
     std::unique_ptr<Loaders> loaders; // the last member: its threads end first
 };
 

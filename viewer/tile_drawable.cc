@@ -89,7 +89,7 @@ void TileDrawable::make_buffers(osg::GLExtensions *gl, OnCard *card) const {
 
 // Runs of pages that are newer than what was sent, within the first `end` items.
 template <class Send> static void each_run(const PageVersions &pages, uint64_t sent, uint32_t end, Send send) {
-    const uint32_t page_items = PageVersions::PAGE;
+    const uint32_t page_items = pages.page_items;
     for (uint32_t page = 0; page * page_items < end; page++) {
         if (pages[page] <= sent) continue;
         uint32_t first = page;

@@ -28,7 +28,10 @@ double place_of(const TileVertex &vertex, int axis) {
 // A vertex whose triangles have no area keeps the normal that it had.
 void put_normal(const float sum[3], int16_t normal[3]) {
     double length = std::sqrt((double)sum[0] * sum[0] + (double)sum[1] * sum[1] + (double)sum[2] * sum[2]);
-    for (int i = 0; i < 3 && length > 0; i++) normal[i] = (int16_t)std::lround(NORMAL_UNIT * sum[i] / length);
+    for (int i = 0; i < 3 && length > 0; i++) {
+        double part = NORMAL_UNIT * sum[i] / length;
+        normal[i] = (int16_t)(part < 0 ? part - 0.5 : part + 0.5);
+    }
 }
 
 uint16_t share(double value, double low, double high) {
@@ -43,7 +46,8 @@ bool is_border(const scree_stream_header &header, const scree_vertex &vertex) {
 } // namespace
 
 void PageVersions::mark(uint32_t first, uint32_t end, uint64_t version) {
-    for (uint32_t page = first / PAGE; page * PAGE < end && page < pages.size(); page++) pages[page] = version;
+    for (uint32_t page = first / page_items; page * page_items < end && page < pages.size(); page++)
+        pages[page] = version;
 }
 
 TileMesh::TileMesh(Player taken, const MeshWorld &world) : player(std::move(taken)), world(world) {
@@ -126,6 +130,7 @@ void TileMesh::find_origins() {
 // Of the finest mesh that is there, whatever is shown: so light does not change with the scale.
 void TileMesh::find_normals() {
     std::vector<Sum> sums(shown.vertex_count, Sum{});
+    border_places.assign(shown.vertex_count, 0);
     for (uint32_t slot = 0; slot < 3 * shown.triangle_count; slot += 3) {
         const TileVertex *corner[3];
         for (int i = 0; i < 3; i++) corner[i] = &vertices[shown.indices[slot + (uint32_t)i]];
@@ -144,8 +149,11 @@ void TileMesh::find_normals() {
         for (int axis = 0; axis < 3; axis++)
             vertices[i].normal[axis] = (int16_t)std::lround(NORMAL_UNIT * up.axes[2][axis]);
         put_normal(sums[i].normal, vertices[i].normal);
-        if (is_border(header(), shown.vertices[i])) border_sums[i] = sums[i];
+        if (!is_border(header(), shown.vertices[i])) continue;
+        border_places[i] = (uint32_t)border_sums.size();
+        border_sums.push_back(sums[i]);
     }
+    both_sums = border_sums;
 }
 
 void TileMesh::positions(std::vector<float> *place) const {
@@ -167,7 +175,7 @@ size_t TileMesh::bytes() const {
     return player_memory(player.get())->used_bytes +
            2 * (vertices.capacity() * sizeof(TileVertex) + indices.capacity() * sizeof(uint32_t) +
                 seam_vertices.capacity() * sizeof(TileVertex) + seam_indices.capacity() * sizeof(uint32_t)) +
-           border_sums.size() * 64;
+           border_places.capacity() * sizeof(uint32_t) + 2 * border_sums.capacity() * sizeof(Sum);
 }
 
 // ---- the scale ----
@@ -214,31 +222,32 @@ double TileMesh::steps_ahead(uint32_t vertex, const TileMesh &other, uint32_t it
 // Both sides list their vertices along the common line from its low end: a walk along both finds those in common.
 void TileMesh::share_normals(const std::vector<Neighbour> &neighbours) {
     const scree_stitch_tile &tile = stitch_tile();
-    std::unordered_map<uint32_t, Sum> both;
-    for (const scree_border &border : tile.borders)
-        for (uint32_t i = 0; i < border.vertex_count; i++)
-            both.emplace(border.vertices[i], border_sums.at(border.vertices[i]));
+    std::vector<Sum> now = border_sums;
     for (const Neighbour &beside : neighbours) {
         const scree_border &border = tile.borders[beside.side];
         const scree_border &other = beside.mesh->stitch_tile().borders[(beside.side + 2) % SCREE_SIDES];
         for (uint32_t i = 0, k = 0; i < border.vertex_count && k < other.vertex_count;) {
             double ahead_steps = steps_ahead(border.vertices[i], *beside.mesh, other.vertices[k], beside.side);
             if (std::fabs(ahead_steps) < 0.5) {
-                const Sum &sum = beside.mesh->border_sums.at(other.vertices[k]);
-                for (int j = 0; j < 3; j++) both[border.vertices[i]].normal[j] += sum.normal[j];
+                const Sum &sum = beside.mesh->border_sums[beside.mesh->border_places[other.vertices[k]]];
+                Sum &both = now[border_places[border.vertices[i]]];
+                for (int j = 0; j < 3; j++) both.normal[j] += sum.normal[j];
             }
             if (ahead_steps < 0.5) i++;
             if (ahead_steps > -0.5) k++;
         }
     }
-    for (const auto &[vertex, sum] : both) { // each on its own: the order does not show
-        int16_t normal[3] = {vertices[vertex].normal[0], vertices[vertex].normal[1], vertices[vertex].normal[2]};
-        put_normal(sum.normal, normal);
-        if (std::equal(normal, normal + 3, vertices[vertex].normal)) continue;
-        std::copy(normal, normal + 3, vertices[vertex].normal);
-        std::copy(normal, normal + 3, vertices[vertex].origin_normal);
-        vertex_pages.mark(vertex, vertex + 1, ++version);
-    }
+    for (const scree_border &border : tile.borders)
+        for (uint32_t i = 0; i < border.vertex_count; i++) {
+            uint32_t at = border.vertices[i];
+            const Sum &sum = now[border_places[at]];
+            Sum &before = both_sums[border_places[at]];
+            if (std::equal(sum.normal, sum.normal + 3, before.normal)) continue;
+            before = sum;
+            put_normal(sum.normal, vertices[at].normal);
+            std::copy_n(vertices[at].normal, 3, vertices[at].origin_normal);
+            vertex_pages.mark(at, at + 1, ++version);
+        }
 }
 
 bool TileMesh::stitch(const std::vector<Neighbour> &neighbours, std::string *error) {
@@ -269,17 +278,17 @@ bool TileMesh::stitch(const std::vector<Neighbour> &neighbours, std::string *err
     seam_version++;
     seam_vertices.clear();
     seam_indices.resize(3 * (size_t)stitch.count.triangles);
-    std::unordered_map<uint32_t, uint32_t> places; // in the seam, by index of the stitch
     for (size_t i = 0; i < seam_indices.size(); i++) {
-        uint32_t index = fans[i];
-        auto [entry, is_new] = places.emplace(index, (uint32_t)seam_vertices.size());
-        if (is_new && index < shown.vertex_count)
-            seam_vertices.push_back(vertices[index]);
-        else if (is_new) {
-            const scree_stitch_source &source = sources[index - shown.vertex_count];
+        size_t before = i < 3 ? 0 : i - i % 3 - 3, known = before; // a fan's triangle shares two with the one before
+        while (known < i && fans[known] != fans[i]) known++;
+        seam_indices[i] = known < i ? seam_indices[known] : (uint32_t)seam_vertices.size();
+        if (known < i) continue;
+        if (fans[i] < shown.vertex_count) {
+            seam_vertices.push_back(vertices[fans[i]]);
+        } else {
+            const scree_stitch_source &source = sources[fans[i] - shown.vertex_count];
             seam_vertices.push_back(neighbours[source.neighbour].mesh->vertices[source.vertex]);
         }
-        seam_indices[i] = entry->second;
     }
     return is_stitched;
 }

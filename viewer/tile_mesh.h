@@ -11,7 +11,6 @@
 
 #include <scree/select.h>
 #include <scree/stitch.h>
-#include <unordered_map>
 #include <vector>
 
 struct TileVertex {
@@ -35,8 +34,9 @@ struct MeshWorld {
 // Which pages of an array have changed since when: whoever sends it on remembers the version that it has sent.
 class PageVersions {
   public:
-    static constexpr uint32_t PAGE = 1024; // items
-    void resize(size_t items) { pages.resize((items + PAGE - 1) / PAGE, 0); }
+    explicit PageVersions(uint32_t page_items) : page_items(page_items) {}
+    const uint32_t page_items;
+    void resize(size_t items) { pages.resize((items + page_items - 1) / page_items, 0); }
     void mark(uint32_t first, uint32_t end, uint64_t version);
     size_t count() const { return pages.size(); }
     uint64_t operator[](size_t page) const { return pages[page]; }
@@ -78,8 +78,8 @@ class TileMesh {
     std::vector<uint32_t> indices;
     std::vector<TileVertex> seam_vertices;
     std::vector<uint32_t> seam_indices;
-    PageVersions vertex_pages, index_pages;
-    uint64_t version = 1, seam_version = 1; // of the latest change
+    PageVersions vertex_pages{64}, index_pages{1024}; // of 4 KiB
+    uint64_t version = 1, seam_version = 1;           // of the latest change
 
     scree_frame frame() const;                       // of the tile, in the world's metres
     void positions(std::vector<float> *place) const; // of the shown vertices, in that frame
@@ -107,7 +107,9 @@ class TileMesh {
     struct Sum {
         float normal[3];
     };
-    std::unordered_map<uint32_t, Sum> border_sums; // by vertex: areas times normals of this tile's own triangles
+    // Of the vertices of the border, areas times normals of this tile's own triangles; and where they stand in it.
+    std::vector<Sum> border_sums, both_sums;
+    std::vector<uint32_t> border_places; // of every vertex
 };
 
 #endif
