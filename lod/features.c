@@ -47,12 +47,25 @@ static struct vector3 scaled_place(const struct search *search, int32_t column, 
     return (struct vector3){place.x * search->scale_x, place.y * search->scale_y, place.z * search->scale_z};
 }
 
+/* How much the terrain bends in a diagonal's direction: at the better of its ends, as a crest may begin at a summit.
+ * Ends on the border do not count. */
+static double bend_m(const struct method_tile *tile, int32_t column, int32_t row, int32_t step) {
+    int32_t end_column = column + step, end_row = row + 1, before = column - step, after = end_column + step;
+    double start_m = (double)method_post_m(tile, column, row), least_m = INFINITY;
+    double end_m = (double)method_post_m(tile, end_column, end_row);
+    if (row > 0 && before >= 0 && before <= tile->columns)
+        least_m = fabs((double)method_post_m(tile, before, row - 1) - 2 * start_m + end_m);
+    if (end_row < tile->rows && after >= 0 && after <= tile->columns)
+        least_m = fmin(least_m, fabs(start_m - 2 * end_m + (double)method_post_m(tile, after, end_row + 1)));
+    return least_m;
+}
+
 static void make_row(const struct search *search, int32_t row, struct cell *cells) {
     for (int32_t column = 0; column < search->tile->columns; column++) {
         struct cell *cell = &cells[column];
         struct vector3 sw = scaled_place(search, column, row), se = scaled_place(search, column + 1, row);
         struct vector3 nw = scaled_place(search, column, row + 1), ne = scaled_place(search, column + 1, row + 1);
-        cell->rising = fabs(ne.z - sw.z) <= fabs(nw.z - se.z);
+        cell->rising = bend_m(search->tile, column, row, 1) <= bend_m(search->tile, column + 1, row, -1);
         cell->normal[0] = cell->rising ? unit_normal(sw, se, ne) : unit_normal(sw, se, nw);
         cell->normal[1] = cell->rising ? unit_normal(sw, ne, nw) : unit_normal(se, ne, nw);
     }

@@ -1,10 +1,10 @@
 /* Sharp edges of a tile's full grid, traced into lines: crests, cliffs and walls that point set simplification would
  * wash out. Pure. Campos et al., "3D Simplification Methods and Large Scale Terrain Tiling" (2020), section 4.3.1.
  *
- * The surface is that of all posts, every cell cut along the diagonal whose ends differ less in height (along a crest
- * rather than across it). An edge is sharp where the planes on its two sides make an angle larger than the threshold;
- * 0 is level ground. Edges that meet are joined; a line ends where any other number than two come together, and at
- * the border. Short lines are noise, and are dropped. */
+ * The surface is that of all posts, every cell cut along the diagonal in whose direction the terrain bends less: along
+ * a crest or a valley rather than across it. An edge is sharp where the planes on its two sides make an angle larger
+ * than the threshold; 0 is level ground. Edges that meet are joined; a line ends where any other number than two come
+ * together, and at the border. Short lines are noise, and are dropped. */
 #ifndef SCREE_LOD_FEATURES_H
 #define SCREE_LOD_FEATURES_H
 

@@ -47,5 +47,6 @@ SUITE(select)
 SUITE(playback)
 SUITE(player)
 SUITE(constrained)
+SUITE(features)
 
 #undef SUITE
