@@ -74,7 +74,7 @@ vec3 tint(float at) {
 void main() {
     vec3 colour = vec3(0.78, 0.76, 0.72);
     // beyond the data's bounds there is ground at a stated height, and nothing to tell of it
-    bool is_data = all(greaterThan(map, vec2(0.0))) && all(lessThan(map, vec2(1.0)));
+    bool is_data = all(greaterThan(map, vec2(1e-5))) && all(lessThan(map, vec2(1.0 - 1e-5)));
     if (scree_is_tinted) colour = is_data ? tint(height) : vec3(0.52, 0.57, 0.60);
     if (scree_is_textured && is_data) {
         vec4 image = texture(scree_texture, map);
@@ -82,8 +82,8 @@ void main() {
     }
     if (scree_colour.w > 0.0) colour = scree_colour.rgb;
     colour *= light;
-    if (scree_contour > 0.0) {
-        float line = height / scree_contour, width = max(fwidth(line), 1e-6);
+    float line = scree_contour > 0.0 ? height / scree_contour : 0.0, width = fwidth(line);
+    if (is_data && width > 1e-5) { // level ground has no line
         float away = abs(fract(line - 0.5) - 0.5) / width; // pixels
         float crowd = clamp(0.5 - width, 0.0, 0.5) * 2.0;  // none where lines would run together
         colour *= 1.0 - 0.45 * crowd * (1.0 - smoothstep(0.4, 1.2, away));
