@@ -114,7 +114,7 @@ static void measure_target(const struct simplifier *simplifier, const struct sta
         int32_t i = around(target + j, star->degree);
         errors[j] = samples_triangle_error(&simplifier->samples, &star->at[target], &star->at[i], &star->at[i + 1]);
         sum += errors[j].sum_squares_m2;
-        if (errors[j].max_m > simplifier->tolerance_m) {
+        if (errors[j].max_m > simplifier->tolerance_m && !simplifier->options.is_unbounded) {
             if (errors[j].max_m < best->refused_m) best->refused_m = errors[j].max_m;
             return;
         }
@@ -236,7 +236,10 @@ void simplify_interior(struct simplifier *simplifier, float tolerance_m) {
         *state = STATE_CHANGED;
         queue_push(queue, v, 0);
     }
-    for (int32_t v = queue_pop(queue); v != QUEUE_NONE; v = queue_pop(queue)) visit(simplifier, v);
+    for (int32_t v = queue_pop(queue); v != QUEUE_NONE; v = queue_pop(queue)) {
+        if (simplifier->mesh->live_vertices <= simplifier->options.least_vertices) return;
+        visit(simplifier, v);
+    }
 }
 
 bool simplify_vertex(struct simplifier *simplifier, const struct star *star) {

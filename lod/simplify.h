@@ -31,6 +31,8 @@ struct simplify_options {
     struct code_frame codes; /* triangles stay positive in these codes too; span 0: codes are not looked at */
     const struct simplify_observer *observer; /* NULL: nobody watches */
     const struct ahead *ahead;                /* rungs that must stay within reach (lod/ahead.h); NULL: none */
+    bool is_unbounded;                        /* any error is admitted: the order alone decides */
+    int32_t least_vertices;                   /* stop when no more than so many are alive; 0: go on */
 };
 
 struct simplifier {

@@ -4,6 +4,7 @@
 #include "lod/method_greedy.h"
 #include "lod/method_grid.h"
 #include "lod/method_hierarchy.h"
+#include "lod/method_qem.h"
 #include "lod/method_quadtree.h"
 #include "lod/method_random.h"
 #include "lod/method_wlop.h"
@@ -24,6 +25,26 @@ static enum scree_status run_greedy(struct scree_memory *memory, const struct me
                                     struct method_mesh *mesh, struct scree_error *error) {
     const struct method_greedy_options options = {.tolerance_m = values[0], .grid_cells = (int32_t)values[1]};
     return method_greedy(memory, tile, &options, mesh, error);
+}
+
+/* ---- qem ---- */
+
+static const struct method_option qem_options[] = {
+    {"error", "largest vertical error, metres; default: the zoom's --error", 0, 1e7, 0, 1, false},
+    {"bound", "0: without it, any error will do, and `vertices` says where to stop; default 1", 0, 1, 1, 0, true},
+    {"vertices", "stop when so many are left, border included; default: when the bound says so", 4, 1e9, NAN, 0, true},
+};
+
+static const char *contradiction_qem(const double values[]) {
+    return values[1] == 0 && isnan(values[2]) ? "bound=0 wants vertices=4 or more, to know where to stop" : NULL;
+}
+
+static enum scree_status run_qem(struct scree_memory *memory, const struct method_tile *tile, const double values[],
+                                 struct method_mesh *mesh, struct scree_error *error) {
+    const struct method_qem_options options = {.tolerance_m = values[0],
+                                               .is_unbounded = values[1] == 0,
+                                               .least_vertices = isnan(values[2]) ? 0 : (uint32_t)values[2]};
+    return method_qem(memory, tile, &options, mesh, error);
 }
 
 /* ---- quadtree ---- */
@@ -135,6 +156,8 @@ static enum scree_status run_wlop(struct scree_memory *memory, const struct meth
 const struct method method_table[] = {
     {"greedy", "Garland and Heckbert's insertion: fast, keeps to a vertical error", OPTIONS(greedy_options), NULL,
      run_greedy},
+    {"qem", "Scree's own collapse on the posts of a zoom: fewest triangles within a vertical error",
+     OPTIONS(qem_options), contradiction_qem, run_qem},
     {"quadtree", "Cifuentes' quadtree of leaves with little curvature: by far the fastest", OPTIONS(quadtree_options),
      NULL, run_quadtree},
     {"random", "random posts between feature lines: the floor for all others", OPTIONS(random_options), NULL,

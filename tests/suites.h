@@ -7,6 +7,7 @@
 SUITE(vocabulary)
 SUITE(fractal)
 SUITE(greedy)
+SUITE(method_qem)
 SUITE(method_greedy)
 SUITE(grid_error)
 SUITE(method_lindstrom_turk)
