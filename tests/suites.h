@@ -49,5 +49,6 @@ SUITE(playback)
 SUITE(player)
 SUITE(constrained)
 SUITE(features)
+SUITE(points)
 
 #undef SUITE
