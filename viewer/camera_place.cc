@@ -29,10 +29,8 @@ osg::Vec3d place_in_bounds(const TerrainWorld &world, double x, double y, double
     const double *bounds = world.bounds();
     const double middle_x = (bounds[0] + bounds[2]) / 2, middle_y = (bounds[1] + bounds[3]) / 2;
     const osg::Vec3d middle = world.middle();
-    double unit_m = 1;
-    if (fabs(middle_x) >= fabs(middle_y) && middle_x != 0) unit_m = middle.x() / middle_x;
-    if (fabs(middle_x) < fabs(middle_y)) unit_m = middle.y() / middle_y;
-    return osg::Vec3d(x * unit_m, y * unit_m, height_m);
+    const double unit_x = middle_x != 0 ? middle.x() / middle_x : 1, unit_y = middle_y != 0 ? middle.y() / middle_y : 1;
+    return osg::Vec3d(x * (middle_x != 0 ? unit_x : unit_y), y * (middle_y != 0 ? unit_y : unit_x), height_m);
 }
 
 // A grid over the data, at their lowest and highest heights.
@@ -63,6 +61,12 @@ struct Fit {
 };
 
 } // namespace
+
+osg::Vec3d middle_on_ground(const TerrainWorld &world) {
+    const double *bounds = world.bounds();
+    return place_in_bounds(world, (bounds[0] + bounds[2]) / 2, (bounds[1] + bounds[3]) / 2,
+                           (world.lowest_m() + world.highest_m()) / 2);
+}
 
 bool parse_camera_place(const std::string &text, CameraPlace *place) {
     double numbers[5];
@@ -98,11 +102,11 @@ CameraPlace place_of_camera(const TerrainWorld &world, const osg::Matrixd &camer
 }
 
 osg::Matrixd overview(const TerrainWorld &world, double field_of_view_deg, double width_by_height, bool orthogonal) {
-    const double margin = 0.96, oblique_deg = -32;
+    const double margin = 0.96, oblique_deg = -38;
     const double slope_y = margin * tan(osg::DegreesToRadians(field_of_view_deg) / 2);
     const double *bounds = world.bounds();
     const bool is_round = world.is_geodetic() && (bounds[2] - bounds[0] > 45 || bounds[3] - bounds[1] > 45);
-    osg::Matrixd camera = turned(0, is_round ? -90 : oblique_deg) * world.local_frame(world.middle());
+    osg::Matrixd camera = turned(0, is_round ? -90 : oblique_deg) * world.local_frame(middle_on_ground(world));
     const osg::Matrixd to_camera = osg::Matrixd::inverse(camera);
     Fit across(slope_y * width_by_height), upwards(slope_y);
     for (const osg::Vec3d &place : hull_of_data(world)) {
@@ -118,7 +122,7 @@ osg::Matrixd overview(const TerrainWorld &world, double field_of_view_deg, doubl
 double depth_of_view(const TerrainWorld &world, const osg::Matrixd &camera_to_world) {
     const osg::Vec3d eye = row(camera_to_world, 3), forward = -row(camera_to_world, 2);
     const double height_m = (world.lowest_m() + world.highest_m()) / 2;
-    const double aside = std::max(fabs((world.middle() - eye) * forward), 1.0);
+    const double aside = std::max(fabs((middle_on_ground(world) - eye) * forward), 1.0);
     if (!world.is_geodetic()) {
         const double depth = (height_m - eye.z()) / forward.z();
         return depth > 1 && depth < 100 * aside ? depth : aside;

@@ -23,6 +23,9 @@ osg::Matrixd camera_to_world(const TerrainWorld &world, const CameraPlace &place
 // The other way round. A roll is lost.
 CameraPlace place_of_camera(const TerrainWorld &world, const osg::Matrixd &camera_to_world);
 
+// The middle of the data, at half of their heights.
+osg::Vec3d middle_on_ground(const TerrainWorld &world);
+
 // The whole terrain from the south, obliquely, as large as it can be without being cut; more than an eighth of the
 // globe is seen from above. The picture spans `field_of_view_deg` from top to bottom; orthogonal: an orthogonal camera
 // will draw it, at the metres a pixel of the terrain's middle.

@@ -15,7 +15,7 @@ double Flight::manual_svo_m(double time_s) const {
 
 CameraPath tour(const TerrainWorld &world, const osg::Matrixd &overview, double duration_s) {
     const int steps = 24;
-    const osg::Vec3d eye = overview.getTrans(), middle = world.middle();
+    const osg::Vec3d eye = overview.getTrans(), middle = middle_on_ground(world);
     const osg::Matrixd frame = world.local_frame(middle);
     const double far_m = (eye - middle).length(), lowest_m = world.highest_m() + world.radius_m() / 50;
     CameraPath path(world.knows_longitudes());

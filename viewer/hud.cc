@@ -6,14 +6,19 @@
 
 namespace {
 
+const char FONT[] = "/usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf";
+
 osg::ref_ptr<osgText::Text> make_text(float size_px, osgText::Text::AlignmentType alignment) {
     osg::ref_ptr<osgText::Text> text = new osgText::Text;
     text->setDataVariance(osg::Object::DYNAMIC);
     text->setCharacterSize(size_px);
     text->setAlignment(alignment);
     text->setColor(osg::Vec4(1, 1, 1, 1));
-    text->setBackdropType(osgText::Text::OUTLINE);
-    text->setBackdropColor(osg::Vec4(0, 0, 0, 0.8f));
+    text->setDrawMode(osgText::Text::TEXT | osgText::Text::FILLEDBOUNDINGBOX);
+    text->setBoundingBoxColor(osg::Vec4(0, 0, 0, 0.5f));
+    text->setBoundingBoxMargin(6);
+    static const osg::ref_ptr<osgText::Font> font = osgText::readRefFontFile(FONT);
+    if (font.valid()) text->setFont(font);
     return text;
 }
 
@@ -61,7 +66,8 @@ void Hud::resize(double width, double height) {
     height_px = height;
     root->setProjectionMatrixAsOrtho2D(0, width, 0, height);
     figures->setPosition(osg::Vec3((float)12, (float)height - 12, 0));
-    help->setPosition(osg::Vec3((float)width / 2 - 200, (float)height / 2, 0));
+    const osg::BoundingBox box = help->getBoundingBox();
+    help->setPosition(osg::Vec3((float)(width - (box.xMax() - box.xMin())) / 2, (float)height / 2, 0));
     note->setPosition(osg::Vec3((float)width / 2, 14, 0));
 }
 

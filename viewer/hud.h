@@ -1,5 +1,5 @@
-// Text over the picture: figures of the frame in the corner, and a page of help. Drawn with OpenSceneGraph's own
-// built-in font: no font file is needed.
+// Text over the picture: figures of the frame in the corner, and a page of help. In Debian's DejaVu where
+// it is there, else in OpenSceneGraph's own built-in font.
 #ifndef SCREE_VIEWER_HUD_H
 #define SCREE_VIEWER_HUD_H
 

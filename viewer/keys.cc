@@ -177,8 +177,8 @@ bool Keys::handle(const osgGA::GUIEventAdapter &event, osgGA::GUIActionAdapter &
 std::string keys_help() {
     std::string help;
     for (const Keys::Key &key : Keys::table) help += std::string("  ") + key.name + "       " + key.help + "\n";
-    return help + "  1       move like a map (drag: turn, middle: pan, right or wheel: nearer)\n"
-                  "  2       move like a trackball\n"
+    return help + "  1       drag the terrain (middle button: along, wheel: nearer)\n"
+                  "  2       the same as a trackball\n"
                   "  space   the overview\n"
                   "  Esc     end\n";
 }
