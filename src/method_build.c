@@ -72,100 +72,9 @@ enum scree_status method_build_hand_up(const struct tile_plan *plan, struct tile
     return post_tile_hand_up_new(tile, coarse, error);
 }
 
-/* ---- what a method sees ---- */
-
-/* A tile as a method sees it. Whole cells: where the lattice ends within one, posts are interpolated from the first to
- * the last one at equal distances, and the border lines are stretched to match. */
-struct view {
-    struct method_tile tile;
-    struct method_frame frame;
-    float *stretched_m;         /* posts; NULL: they are the tile's own */
-    struct border_line *border; /* SIDE_COUNT lines; NULL: they are the tile's own */
-};
-
-/* Post `index` of those at equal distances, as a post of the tile and the way on to the next one. */
-static int32_t post_before(int32_t index, int32_t count, int32_t length, int32_t span, double *share) {
-    double position = (double)index * length / count;
-    int32_t before = (int32_t)(position / span);
-    if (before > count - 1) before = count - 1;
-    double next = fmin((before + 1.0) * span, length);
-    *share = (position - (double)before * span) / (next - (double)before * span);
-    return before;
-}
-
-static enum scree_status stretch_posts(const struct post_tile *tile, struct view *view, struct scree_error *error) {
-    int32_t across = tile->columns + 1;
-    view->stretched_m = scree_allocate(tile->memory, (size_t)across * (size_t)(tile->rows + 1),
-                                       sizeof *view->stretched_m, "posts at the end of the lattice", error);
-    if (view->stretched_m == NULL) return SCREE_E_MEMORY;
-    for (int32_t row = 0; row <= tile->rows; row++)
-        for (int32_t column = 0; column <= tile->columns; column++) {
-            double right, up;
-            int32_t x = post_before(column, tile->columns, tile->width, tile->cell_span, &right);
-            int32_t y = post_before(row, tile->rows, tile->height, tile->cell_span, &up);
-            const float *low = tile->heights_m + (int64_t)y * across + x, *high = low + across;
-            double south_m = low[0] + right * (low[1] - low[0]), north_m = high[0] + right * (high[1] - high[0]);
-            view->stretched_m[(int64_t)row * across + column] = (float)(south_m + up * (north_m - south_m));
-        }
-    return SCREE_OK;
-}
-
-/* Positions grow by a factor of at least 1, so those of different vertices stay apart. */
-static enum scree_status stretch_lines(const struct post_tile *tile, struct view *view, struct scree_error *error) {
-    view->border = scree_allocate(tile->memory, SIDE_COUNT, sizeof *view->border, "a tile's border", error);
-    if (view->border == NULL) return SCREE_E_MEMORY;
-    for (int side = 0; side < SIDE_COUNT; side++) {
-        bool horizontal = side == SIDE_SOUTH || side == SIDE_NORTH;
-        double whole = (double)(horizontal ? tile->columns : tile->rows) * tile->cell_span;
-        double factor = whole / (horizontal ? tile->width : tile->height);
-        struct border_line *line = &view->border[side];
-        *line = tile->lines[side];
-        for (int32_t v = 0; v < line->vertex_count; v++)
-            line->vertices[v].position = (int32_t)floor(line->vertices[v].position * factor + 0.5);
-        line->curvature_m /= factor * factor;
-        view->tile.lines[side] = line;
-    }
-    return SCREE_OK;
-}
-
-static enum scree_status view_tile(const struct tile_plan *plan, struct tile_id id, const struct post_tile *tile,
-                                   struct view *view, struct scree_error *error) {
-    struct lattice_window window = lattice_tile_window(plan->lattice, id);
-    double middle = (double)window.y + 0.5 * window.rows;
-    double stretch_x = (double)tile->columns * tile->cell_span / tile->width;
-    double stretch_y = (double)tile->rows * tile->cell_span / tile->height;
-    *view = (struct view){.tile = {.columns = tile->columns,
-                                   .rows = tile->rows,
-                                   .cell_span = tile->cell_span,
-                                   .heights_m = tile->heights_m,
-                                   .stride = tile->columns + 1},
-                          .frame = {.span = lattice_tile_span(plan->lattice, id.zoom),
-                                    .width = tile->width,
-                                    .height = tile->height,
-                                    .height_unit_m = plan->ladder->height_unit_m}};
-    lattice_steps_m(plan->lattice, middle, &view->tile.east_m, &view->tile.north_m);
-    view->tile.east_m /= stretch_x;
-    view->tile.north_m /= stretch_y;
-    if (plan->lattice->profile == PROFILE_GEODETIC) {
-        view->tile.east_drop_m = lattice_parallel_drop_m(plan->lattice, middle) / (stretch_x * stretch_x);
-        view->tile.north_drop_m = lattice_meridian_drop_m(plan->lattice) / (stretch_y * stretch_y);
-    }
-    for (int side = 0; side < SIDE_COUNT; side++) view->tile.lines[side] = view->frame.lines[side] = &tile->lines[side];
-    if (stretch_x == 1 && stretch_y == 1) return SCREE_OK;
-    enum scree_status status = stretch_posts(tile, view, error);
-    if (status != SCREE_OK) return status;
-    view->tile.heights_m = view->stretched_m;
-    return stretch_lines(tile, view, error);
-}
-
-static void view_release(struct scree_memory *memory, struct view *view) {
-    scree_release(memory, view->border);
-    scree_release(memory, view->stretched_m);
-}
-
 /* ---- figures ---- */
 
-static enum scree_status measure_errors(const struct view *view, const struct scree_mesh *coded,
+static enum scree_status measure_errors(const struct method_view *view, const struct scree_mesh *coded,
                                         struct scree_memory *memory, struct terrain_tile_statistics *statistics,
                                         struct scree_error *error) {
     struct method_mesh drawn;
@@ -178,7 +87,7 @@ static enum scree_status measure_errors(const struct view *view, const struct sc
 }
 
 /* The mean minimum quadric error, of the mesh in codes. */
-static enum scree_status measure_scale(const struct view *view, const struct scree_mesh *coded,
+static enum scree_status measure_scale(const struct method_view *view, const struct scree_mesh *coded,
                                        struct scree_memory *memory, struct terrain_tile_statistics *statistics,
                                        struct scree_error *error) {
     struct mesh mesh = {0};
@@ -226,25 +135,23 @@ static float *slopes_new(const struct post_tile *tile, const struct method_frame
     return slopes;
 }
 
-static enum scree_status write_coded(const struct tile_plan *plan, struct tile_id id, const struct post_tile *tile,
-                                     const struct scree_mesh *coded, const float *slopes, struct tile_store *store,
-                                     struct terrain_tile_statistics *statistics, struct scree_error *error) {
-    unsigned char *bytes = NULL;
-    size_t size_bytes, written_bytes = 0;
-    const struct terrain_tile terrain = {.lattice = plan->lattice,
-                                         .id = id,
-                                         .mesh = coded,
-                                         .is_coded = true,
-                                         .slopes = slopes,
-                                         .height_unit_m = plan->ladder->height_unit_m,
-                                         .border_step = plan->ladder->border_step[id.zoom]};
-    enum scree_status status = quantized_mesh_encode_new(tile->memory, &terrain, &bytes, &size_bytes, error);
-    if (status == SCREE_OK)
-        status = tile_store_write(store, id, bytes, size_bytes, !plan->plain, &written_bytes, error);
-    scree_release(tile->memory, bytes);
-    statistics->vertices = coded->vertex_count;
-    statistics->triangles = coded->triangle_count;
-    statistics->bytes = written_bytes;
+enum scree_status method_build_encode(const struct tile_plan *plan, struct tile_id id, const struct post_tile *tile,
+                                      const struct method_view *view, const struct method_mesh *mesh,
+                                      struct scree_mesh *coded, unsigned char **bytes, size_t *size_bytes,
+                                      struct scree_error *error) {
+    float *slopes = NULL;
+    struct terrain_tile terrain = {.lattice = plan->lattice,
+                                   .id = id,
+                                   .mesh = coded,
+                                   .is_coded = true,
+                                   .height_unit_m = plan->ladder->height_unit_m,
+                                   .border_step = plan->ladder->border_step[id.zoom]};
+    enum scree_status status = method_to_codes_new(tile->memory, &view->tile, &view->frame, mesh, coded, error);
+    if (status == SCREE_OK && !plan->no_normals &&
+        (terrain.slopes = slopes = slopes_new(tile, &view->frame, coded, error)) == NULL)
+        status = SCREE_E_MEMORY;
+    if (status == SCREE_OK) status = quantized_mesh_encode_new(tile->memory, &terrain, bytes, size_bytes, error);
+    scree_release(tile->memory, slopes);
     return status;
 }
 
@@ -255,21 +162,25 @@ enum scree_status method_build_write(const struct tile_plan *plan, struct tile_i
     double tolerance_m = plan->ladder->tolerance_m[id.zoom];
     struct method_mesh mesh = {0};
     struct scree_mesh coded = {0};
-    float *slopes = NULL;
-    struct view view;
-    enum scree_status status = view_tile(plan, id, tile, &view, error);
+    unsigned char *bytes = NULL;
+    size_t size_bytes = 0, written_bytes = 0;
+    struct method_view view;
+    enum scree_status status = method_view_make(plan, id, tile, &view, error);
     if (status == SCREE_OK) status = method_run(plan->method, id.zoom, tolerance_m, memory, &view.tile, &mesh, error);
-    if (status == SCREE_OK) status = method_to_codes_new(memory, &view.tile, &view.frame, &mesh, &coded, error);
+    if (status == SCREE_OK)
+        status = method_build_encode(plan, id, tile, &view, &mesh, &coded, &bytes, &size_bytes, error);
     method_mesh_release(memory, &mesh);
     if (status == SCREE_OK) status = measure_errors(&view, &coded, memory, statistics, error);
     if (status == SCREE_OK) status = measure_scale(&view, &coded, memory, statistics, error);
-    if (status == SCREE_OK && !plan->no_normals && (slopes = slopes_new(tile, &view.frame, &coded, error)) == NULL)
-        status = SCREE_E_MEMORY;
-    if (status == SCREE_OK) status = write_coded(plan, id, tile, &coded, slopes, store, statistics, error);
+    if (status == SCREE_OK)
+        status = tile_store_write(store, id, bytes, size_bytes, !plan->plain, &written_bytes, error);
+    statistics->vertices = coded.vertex_count;
+    statistics->triangles = coded.triangle_count;
+    statistics->bytes = written_bytes;
     statistics->tolerance_m = tolerance_m;
-    scree_release(memory, slopes);
+    scree_release(memory, bytes);
     scree_release(memory, coded.corners);
     scree_release(memory, coded.vertices);
-    view_release(memory, &view);
+    method_view_release(memory, &view);
     return status;
 }

@@ -6,6 +6,7 @@
 #define SCREE_METHOD_BUILD_H
 
 #include "lod/post_tile.h"
+#include "src/method_view.h"
 #include "src/terrain_tile.h"
 #include "src/tile_place.h"
 #include "src/tile_store_io.h"
@@ -18,6 +19,13 @@ enum scree_status method_build_level(const struct tile_plan *plan, struct tile_i
 enum scree_status method_build_parent(const struct tile_plan *plan, struct tile_id id,
                                       const struct post_tile *const children[4], struct scree_memory *memory,
                                       struct post_tile *tile, struct scree_error *error);
+
+/* A mesh of a tile as it is written: in position codes, and as the bytes of the static tile before compression. `coded`
+ * and `bytes` belong to the tile's memory and are to be released in any case; `coded` must be empty. */
+enum scree_status method_build_encode(const struct tile_plan *plan, struct tile_id id, const struct post_tile *tile,
+                                      const struct method_view *view, const struct method_mesh *mesh,
+                                      struct scree_mesh *coded, unsigned char **bytes, size_t *size_bytes,
+                                      struct scree_error *error);
 
 /* Runs the method, writes the static tile and tells its figures: errors are those of the tile as written, against all
  * posts of the zoom, but for the rounding of heights. */
