@@ -14,6 +14,7 @@ enum exit_code {
 int command_build(int argc, char **argv);
 int command_info(int argc, char **argv);
 int command_verify(int argc, char **argv);
+int command_compare(int argc, char **argv);
 int command_extract(int argc, char **argv);
 int command_remesh(int argc, char **argv);
 

@@ -2,7 +2,8 @@
  *
  * Distances are taken in space: earth-centred coordinates, seen from the tile's middle (x east, y north, z up); in the
  * local profile metres of the raster's own plane with heights above it. The posts are a surface too: every cell is two
- * triangles, as in the papers. */
+ * triangles, as in the papers, and border vertices that lie between posts, which every method is given, belong to it.
+ */
 #ifndef SCREE_COMPARE_MEASURE_H
 #define SCREE_COMPARE_MEASURE_H
 
@@ -13,7 +14,7 @@ struct compare_subject {
     const struct lattice *lattice;
     struct tile_id id;
     const struct method_tile *tile;
-    struct method_mesh grid; /* the posts */
+    struct method_mesh grid; /* the posts, row by row, then border vertices between them */
     struct vector3 *grid_m;  /* where its vertices are */
     struct hausdorff_options sampling;
     struct hausdorff_surface posts;

@@ -141,16 +141,19 @@ static void add_markdown_times(const struct compare_report *report, struct text 
 }
 
 static void add_markdown_pictures(const struct compare_report *report, struct text *text) {
-    text_add(text, "\n## The meshes\n\nThe first tile of each zoom, from above and from the south.\n");
+    bool has_begun = false;
     for (uint32_t z = 0; z < report->zoom_count; z++) {
         const struct compare_zoom *zoom = &report->zooms[z];
-        if (zoom->picture == NULL) continue;
-        text_add(text, "\n### Zoom %d\n\nThe posts themselves:\n\n![](%s)\n", zoom->zoom, zoom->picture);
+        if (zoom->picture[0] == '\0') continue;
+        if (!has_begun) text_add(text, "\n## Meshes\n\nOne tile of each zoom, from above and from the south.\n");
+        has_begun = true;
+        text_add(text, "\n### Tile %d/%u/%u\n\nThe posts themselves:\n\n![](%s)\n", zoom->zoom,
+                 (unsigned)zoom->picture_tile.x, (unsigned)zoom->picture_tile.y, zoom->picture);
         for (uint32_t i = 0; i < report->entry_count; i++) {
             const struct compare_entry *entry = &report->entries[i];
-            if (entry->zoom != zoom->zoom || entry->picture == NULL) continue;
+            if (entry->zoom != zoom->zoom || entry->picture[0] == '\0') continue;
             text_add(text, "\n%s, %u triangles:\n\n![](%s)\n", report->methods[entry->method],
-                     (unsigned)entry->tiles[0].triangles, entry->picture);
+                     (unsigned)entry->picture_triangles, entry->picture);
         }
     }
 }

@@ -29,7 +29,8 @@ struct compare_entry {
     uint32_t wanted_triangles;     /* 0: as many as the options give */
     char options[256];             /* as they were at this zoom; "" when there are none */
     struct compare_figures *tiles; /* one a tile of the zoom, in the same order for all methods */
-    const char *picture;           /* a file beside the report; NULL: none was drawn */
+    char picture[64];              /* a file beside the report; "": none was drawn */
+    uint32_t picture_triangles;
 };
 
 struct compare_zoom {
@@ -38,7 +39,8 @@ struct compare_zoom {
     uint32_t tiles_in_all; /* that the data touch */
     bool is_cut; /* the zoom has no whole tile of 256 x 256 cells: this is one that the raster's border cuts */
     double tolerance_m;
-    const char *picture; /* of the posts */
+    char picture[64]; /* of the posts of one tile; "": none was drawn */
+    struct tile_id picture_tile;
 };
 
 struct compare_report {

@@ -1,4 +1,5 @@
 /* What scree compare measures, looks for, writes and draws, piece by piece. */
+#include "lod/method_error.h"
 #include "src/compare_measure.h"
 #include "src/compare_report.h"
 #include "src/compare_run_io.h"
@@ -138,6 +139,40 @@ static void a_lifted_copy_of_the_posts_is_as_far_off_as_it_was_lifted(void) {
     made_method_tile_free(made);
 }
 
+/* Border vertices between the posts, which all methods are given, count as terrain. */
+static void the_posts_go_along_with_the_border(void) {
+    const struct method_recipe recipe = {.columns = 12, .rows = 9, .cell_span = 8, .border_tolerance_m = 1};
+    struct made_method_tile *made = made_method_tile_new(&recipe);
+    struct scree_memory memory = {0};
+    struct lattice lattice;
+    struct compare_subject subject;
+    struct method_error error;
+    uint32_t between = 0;
+    CU_ASSERT_EQUAL_FATAL(lattice_local(200, 200, 0, 0, 30, 30, 1, &lattice, NULL), SCREE_OK);
+    CU_ASSERT_EQUAL_FATAL(compare_subject_make(&memory, &lattice, (struct tile_id){0}, &made->tile, 1, &subject, NULL),
+                          SCREE_OK);
+    for (int side = 0; side < SIDE_COUNT; side++)
+        for (int32_t i = 0; i < made->lines[side].vertex_count; i++) {
+            const struct border_sample *vertex = &made->lines[side].vertices[i];
+            struct vector3 at = {30.0 * vertex->position, 30.0 * vertex->position, (double)vertex->height_m};
+            if (side == SIDE_SOUTH) at.y = 0;
+            if (side == SIDE_EAST) at.x = 30.0 * method_width(&made->tile);
+            if (side == SIDE_NORTH) at.y = 30.0 * method_height(&made->tile);
+            if (side == SIDE_WEST) at.x = 0;
+            CU_ASSERT_TRUE(mesh_distance_m(&subject.posts.index, at) < 1e-9);
+            between += vertex->position % 8 != 0;
+        }
+    CU_ASSERT_TRUE(between > 10);
+    CU_ASSERT_EQUAL(subject.grid.vertex_count, 13 * 10 + between);
+    CU_ASSERT_EQUAL(subject.grid.triangle_count, 2 * 12 * 9 + between);
+    CU_ASSERT_EQUAL(method_error_measure(&memory, &made->tile, &subject.grid, &error, NULL), SCREE_OK);
+    CU_ASSERT_TRUE(error.covers);
+    CU_ASSERT_DOUBLE_EQUAL(error.max_m, 0, 1e-9);
+    compare_subject_release(&memory, &subject);
+    CU_ASSERT_EQUAL(memory.used_bytes, 0);
+    made_method_tile_free(made);
+}
+
 /* A level tile of the globe as two triangles: the middle of the ellipsoid rises above them by its sagitta. */
 static void the_globe_is_round(void) {
     enum { CELLS = 64 };
@@ -146,6 +181,8 @@ static void the_globe_is_round(void) {
     struct tile_id id = {4, 16, 8}; /* on the equator, 11.25 degrees wide */
     struct method_tile tile = {
         .columns = CELLS, .rows = CELLS, .cell_span = 256 / CELLS, .heights_m = level_m, .stride = CELLS + 1};
+    static struct border_line line = {.vertex_count = 2, .vertices = {{0, 0}, {256, 0}}};
+    for (int side = 0; side < SIDE_COUNT; side++) tile.lines[side] = &line;
     struct method_vertex vertices[] = {{0, 0, 0}, {256, 0, 0}, {256, 256, 0}, {0, 256, 0}};
     uint32_t corners[] = {0, 1, 2, 0, 2, 3};
     struct method_mesh mesh = {4, 2, vertices, corners};
@@ -191,8 +228,8 @@ static void make_report(struct made_report *made, uint32_t wanted) {
                     figures_of(1, 700, 3, 1)},
         .zoom = {.zoom = 9, .tile_count = 2, .tiles_in_all = 5, .tolerance_m = 20, .picture = "posts.png"},
         .methods = {"first", "second, \"b\""}};
-    made->entries[0] = (struct compare_entry){9, 0, wanted, "e=2.5", made->figures, "first.png"};
-    made->entries[1] = (struct compare_entry){9, 1, wanted, "", made->figures + 2, NULL};
+    made->entries[0] = (struct compare_entry){9, 0, wanted, "e=2.5", made->figures, "first.png", 1000};
+    made->entries[1] = (struct compare_entry){9, 1, wanted, "", made->figures + 2, "", 0};
     made->report = (struct compare_report){"dem.tif", 2, made->methods, 1, 2, &made->zoom, made->entries};
 }
 
@@ -226,7 +263,8 @@ static void the_report_says_the_same_in_all_forms(void) {
     compare_add_markdown(&made.report, &page);
     CU_ASSERT_TRUE(says(&page, "## Zoom 9, 2 full tiles of 5\n"));
     CU_ASSERT_TRUE(says(&page, "| first | e=2.5 | 0.2500 | 507.5 | 1015.0 | 6.00 | 8.00 | 16.00 | 3.536 | 1000 |"));
-    CU_ASSERT_TRUE(says(&page, "![](first.png)"));
+    CU_ASSERT_TRUE(says(&page, "first, 1000 triangles:\n\n![](first.png)"));
+    CU_ASSERT_TRUE(says(&page, "![](posts.png)"));
     CU_ASSERT_FALSE(says(&page, "(!)"));
     compare_add_table(&made.report, &table);
     CU_ASSERT_TRUE(says(&table, "first              0.2500     507.5    1015.0        6.00       16.00     3.536"));
@@ -342,6 +380,7 @@ int suite_compare(void) {
     CU_ADD_TEST(suite, the_option_that_gives_so_many_triangles_is_found);
     CU_ADD_TEST(suite, the_nearest_counts_where_nothing_fits);
     CU_ADD_TEST(suite, a_lifted_copy_of_the_posts_is_as_far_off_as_it_was_lifted);
+    CU_ADD_TEST(suite, the_posts_go_along_with_the_border);
     CU_ADD_TEST(suite, the_globe_is_round);
     CU_ADD_TEST(suite, means_are_over_tiles_and_posts);
     CU_ADD_TEST(suite, the_report_says_the_same_in_all_forms);
