@@ -103,10 +103,10 @@ static void scan_row(const float *z, int32_t count, const struct plane *plane, d
 static struct plane plane_through(const struct insertion *insertion, const uint32_t corner[3]) {
     const struct delaunay_point *points = insertion->mesh.points;
     struct delaunay_point a = points[corner[0]], b = points[corner[1]], c = points[corner[2]];
-    double span = insertion->posts.span, za = insertion->heights_m[corner[0]];
-    double bx = (b.x - a.x) / span, by = (b.y - a.y) / span, cx = (c.x - a.x) / span, cy = (c.y - a.y) / span;
+    double scale = insertion->cells_a_step, za = insertion->heights_m[corner[0]];
+    double bx = (b.x - a.x) * scale, by = (b.y - a.y) * scale, cx = (c.x - a.x) * scale, cy = (c.y - a.y) * scale;
     double bz = insertion->heights_m[corner[1]] - za, cz = insertion->heights_m[corner[2]] - za;
-    struct plane plane = {a.x / span, a.y / span, bx * cy - by * cx, 0, bz * cy - cz * by, cz * bx - bz * cx};
+    struct plane plane = {a.x * scale, a.y * scale, bx * cy - by * cx, 0, bz * cy - cz * by, cz * bx - bz * cx};
     plane.base = za * plane.area2;
     return plane;
 }
@@ -143,8 +143,9 @@ static struct peak scan_triangle(const struct insertion_posts *posts, const stru
     struct side long_side = side_new(a, c, span, row, middle_is_right);
     struct side short_side = {0};
     if (row < turn) short_side = side_new(a, b, span, row, !middle_is_right);
+    if (row > turn) turn = row;
     for (;; row++) {
-        if (row == turn || (row > turn && short_side.divisor == 0)) {
+        if (row == turn) {
             if (b.y < c.y)
                 short_side = side_new(b, c, span, row, !middle_is_right);
             else /* level with c: a single row, that of both */
@@ -176,8 +177,8 @@ static double worst_post(const struct insertion *insertion, const uint32_t corne
     *candidate = peak.post;
     if (insertion->rounding == 0) return peak.error_area2 / plane.area2;
     int32_t west = at_most(a.x, at_most(b.x, c.x)), east = at_least(a.x, at_least(b.x, c.x));
-    double span = insertion->posts.span;
-    double rounding_area2 = insertion->rounding * ((east - west) / span) * ((c.y - a.y) / span);
+    double scale = insertion->cells_a_step;
+    double rounding_area2 = insertion->rounding * ((east - west) * scale) * ((c.y - a.y) * scale);
     return peak.error_area2 <= rounding_area2 ? 0 : (peak.error_area2 + rounding_area2) / plane.area2;
 }
 
@@ -271,7 +272,7 @@ static enum scree_status reserve(struct insertion *insertion, uint32_t point_cou
 enum scree_status insertion_start(struct scree_memory *memory, const struct insertion_posts *posts,
                                   double largest_vertex_m, bool whole, struct insertion *insertion,
                                   struct scree_error *error) {
-    *insertion = (struct insertion){.memory = memory, .posts = *posts};
+    *insertion = (struct insertion){.memory = memory, .posts = *posts, .cells_a_step = 1.0 / posts->span};
     int32_t east = posts->columns - 1, north = posts->rows - 1;
     enum scree_status status = delaunay_start(memory, east * posts->span, north * posts->span, &insertion->mesh, error);
     if (status == SCREE_OK) status = survey_heights(insertion, largest_vertex_m, whole, error);

@@ -29,6 +29,7 @@ struct insertion {
     struct scree_memory *memory;
     struct insertion_posts posts;
     double tolerance_m;
+    double cells_a_step;
     double rounding;      /* relative to the extent of a triangle; 0 where all heights are whole numbers */
     struct delaunay mesh; /* marks of its triangles: the worst post, the place in the heap */
     double *heights_m;    /* one a point of the mesh */
