@@ -164,7 +164,7 @@ static bool stay_positive(const struct work *work, const struct star *star, int3
 
 static bool stay_within(const struct work *work, const struct star *star, int32_t other, const struct sample *place) {
     double limit_m = work->options.tolerance_m;
-    for (int32_t i = 0; i < star->degree && limit_m > 0; i++)
+    for (int32_t i = 0; i < star->degree && work->options.is_bounded; i++)
         if (star->ring[i] != other && star->ring[i + 1] != other &&
             post_grid_error_m(&work->grid, place, &star->at[i], &star->at[i + 1], limit_m) > limit_m)
             return false;
@@ -257,7 +257,7 @@ static enum scree_status check_options(struct method_lindstrom_turk_options *opt
     if (!(weights->volume >= 0 && weights->boundary >= 0 && weights->shape >= 0) ||
         !isfinite(weights->volume + weights->boundary + weights->shape))
         return scree_fail(error, SCREE_E_ARGUMENT, "a weight of the edge collapse is not a number of 0 or more");
-    if (!(options->tolerance_m >= 0) || (options->edges == 0 && !(options->tolerance_m > 0)))
+    if (options->is_bounded ? !(options->tolerance_m >= 0) : options->edges == 0)
         return scree_fail(error, SCREE_E_ARGUMENT,
                           "the edge collapse has neither a number of edges nor a tolerance to stop at");
     if (weights->volume + weights->boundary + weights->shape > 0) return SCREE_OK;

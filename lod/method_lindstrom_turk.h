@@ -23,8 +23,9 @@
 #include "lod/position_code.h"
 
 struct method_lindstrom_turk_options {
-    uint32_t edges;     /* e_e: stop when no more are left; 0: go on as long as a collapse is admitted */
-    double tolerance_m; /* no collapse goes beyond; 0: errors are not looked at. One of the two is needed */
+    uint32_t edges;                   /* e_e: stop when no more are left; 0: go on as long as a collapse is admitted */
+    bool is_bounded;                  /* no collapse goes beyond the tolerance. Needed where `edges` is 0 */
+    double tolerance_m;               /* at least 0 */
     struct lindstrom_weights weights; /* e_v, e_b, e_s, at least 0; all 0: 0.5, 0.5 and 0, as is usual */
     bool free_borders;                /* the lines' vertices may go as well: for a tile without neighbours */
     struct code_frame codes; /* in lattice steps: triangles stay positive in these codes too; span 0: not looked at */

@@ -4,6 +4,7 @@
 #include "lod/method_greedy.h"
 #include "lod/method_grid.h"
 #include "lod/method_hierarchy.h"
+#include "lod/method_lindstrom_turk.h"
 #include "lod/method_qem.h"
 #include "lod/method_quadtree.h"
 #include "lod/method_random.h"
@@ -45,6 +46,33 @@ static enum scree_status run_qem(struct scree_memory *memory, const struct metho
                                                .is_unbounded = values[1] == 0,
                                                .least_vertices = isnan(values[2]) ? 0 : (uint32_t)values[2]};
     return method_qem(memory, tile, &options, mesh, error);
+}
+
+/* ---- lindstrom-turk ---- */
+
+static const struct method_option lindstrom_turk_options[] = {
+    {"e_e", "edges at which to stop; default: when `error` says so", 5, 1e9, NAN, 0, true},
+    {"error", "largest vertical error, metres; default: the zoom's --error", 0, 1e7, 0, 1, false},
+    {"bound", "1: `error` holds at every post, 0: it is not looked at; default 1, with e_e 0", 0, 1, NAN, 0, true},
+    {"e_v", "weight of volumes; default 0.5", 0, 1e9, 0.5, 0, false},
+    {"e_b", "weight of areas along free borders, of which a pyramid has none; default 0.5", 0, 1e9, 0.5, 0, false},
+    {"e_s", "weight of lengths, which keeps triangles round on level ground; default 1e-10", 0, 1e9, 1e-10, 0, false},
+};
+
+static const char *contradiction_lindstrom_turk(const double values[]) {
+    if (isnan(values[0]) && values[2] == 0) return "bound=0 wants e_e=5 or more, to know where to stop";
+    return values[3] + values[4] + values[5] > 0 ? NULL : "e_v, e_b and e_s are all 0: every collapse would be as good";
+}
+
+static enum scree_status run_lindstrom_turk(struct scree_memory *memory, const struct method_tile *tile,
+                                            const double values[], struct method_mesh *mesh,
+                                            struct scree_error *error) {
+    bool by_edges = !isnan(values[0]), bounded = isnan(values[2]) ? !by_edges : values[2] != 0;
+    const struct method_lindstrom_turk_options options = {.edges = by_edges ? (uint32_t)values[0] : 0,
+                                                          .is_bounded = bounded,
+                                                          .tolerance_m = values[1],
+                                                          .weights = {values[3], values[4], values[5]}};
+    return method_lindstrom_turk(memory, tile, &options, mesh, error);
 }
 
 /* ---- quadtree ---- */
@@ -158,6 +186,8 @@ const struct method method_table[] = {
      run_greedy},
     {"qem", "Scree's own collapse on the posts of a zoom: fewest triangles within a vertical error",
      OPTIONS(qem_options), contradiction_qem, run_qem},
+    {"lindstrom-turk", "Lindstrom and Turk's edge collapse: vertices between the posts, smooth and close in the mean",
+     OPTIONS(lindstrom_turk_options), contradiction_lindstrom_turk, run_lindstrom_turk},
     {"quadtree", "Cifuentes' quadtree of leaves with little curvature: by far the fastest", OPTIONS(quadtree_options),
      NULL, run_quadtree},
     {"random", "random posts between feature lines: the floor for all others", OPTIONS(random_options), NULL,

@@ -120,7 +120,8 @@ static void it_stops_at_an_error(void) {
         {.columns = 2, .rows = 2, .cell_span = 16384, .border_tolerance_m = 3}};
     for (size_t i = 0; i < sizeof recipes / sizeof *recipes; i++) {
         struct made_method_tile *made = made_method_tile_new(&recipes[i]);
-        struct method_lindstrom_turk_options fine = {.tolerance_m = 5}, coarse = {.tolerance_m = 20};
+        struct method_lindstrom_turk_options fine = {.is_bounded = true, .tolerance_m = 5},
+                                             coarse = {.is_bounded = true, .tolerance_m = 20};
         struct result result = run(&made->tile, &fine), coarser = run(&made->tile, &coarse);
         CU_ASSERT(result.verdict.is_triangulation && coarser.verdict.is_triangulation);
         CU_ASSERT(result.verdict.max_m <= 5 + 1e-6);
@@ -182,7 +183,8 @@ static void level_ground_becomes_large_triangles(void) {
     static float level_m[33 * 33];
     struct made_method_tile *made =
         made_method_tile_new(&(struct method_recipe){.columns = 32, .rows = 32, .given_heights_m = level_m});
-    struct result result = run(&made->tile, &(struct method_lindstrom_turk_options){.tolerance_m = 1});
+    struct result result =
+        run(&made->tile, &(struct method_lindstrom_turk_options){.is_bounded = true, .tolerance_m = 1});
     CU_ASSERT(result.verdict.is_triangulation);
     CU_ASSERT_EQUAL(result.verdict.max_m, 0);
     CU_ASSERT(result.mesh.triangle_count <= 8);
@@ -297,7 +299,7 @@ static void codes_stay_positive(void) {
 static void the_same_tile_gives_the_same_mesh(void) {
     struct made_method_tile *made =
         made_method_tile_new(&(struct method_recipe){.columns = 48, .rows = 64, .border_tolerance_m = 5});
-    struct method_lindstrom_turk_options options = {.tolerance_m = 8};
+    struct method_lindstrom_turk_options options = {.is_bounded = true, .tolerance_m = 8};
     struct result one = run(&made->tile, &options), other = run(&made->tile, &options);
     CU_ASSERT(method_meshes_equal(&one.mesh, &other.mesh));
     finish(&other);
@@ -309,8 +311,9 @@ static void what_makes_no_sense_is_refused(void) {
     struct made_method_tile *made = made_method_tile_new(&(struct method_recipe){.columns = 8, .rows = 8});
     static const struct method_lindstrom_turk_options bad[] = {
         {.edges = 0},
-        {.tolerance_m = -1, .edges = 10},
-        {.tolerance_m = NAN},
+        {.tolerance_m = 5},
+        {.is_bounded = true, .tolerance_m = -1, .edges = 10},
+        {.is_bounded = true, .tolerance_m = NAN},
         {.edges = 10, .weights = {-1, 1, 1}},
         {.edges = 10, .weights = {NAN, 1, 1}},
         {.edges = 10, .weights = {1, 1, INFINITY}},
@@ -328,7 +331,7 @@ static void what_makes_no_sense_is_refused(void) {
 static void lack_of_memory_leaves_no_mesh(void) {
     struct made_method_tile *made =
         made_method_tile_new(&(struct method_recipe){.columns = 12, .rows = 12, .border_tolerance_m = 5});
-    struct method_lindstrom_turk_options options = {.tolerance_m = 8};
+    struct method_lindstrom_turk_options options = {.is_bounded = true, .tolerance_m = 8};
     enum scree_status status = SCREE_E_MEMORY;
     for (uint64_t n = 1; n < 100 && status != SCREE_OK; n++) {
         struct scree_memory memory = {.fail_request = n};
