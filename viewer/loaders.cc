@@ -27,7 +27,7 @@ void Loaders::work() {
         if (is_ending) return;
         LoadRequest request = std::move(queue.front());
         queue.pop_front();
-        if (!begun.insert(request.tile).second) continue;
+        if (!begun.emplace(request.tile, request.bytes).second) continue;
         guard.unlock();
         LoadedTile tile;
         try {
@@ -56,14 +56,16 @@ std::vector<LoadedTile> Loaders::take() {
     return taken;
 }
 
-bool Loaders::is_loading(uint32_t tile) const {
-    std::lock_guard<std::mutex> guard(lock);
-    return begun.count(tile) != 0;
-}
-
 uint32_t Loaders::loading() const {
     std::lock_guard<std::mutex> guard(lock);
     return (uint32_t)begun.size();
+}
+
+uint64_t Loaders::loading_bytes() const {
+    std::lock_guard<std::mutex> guard(lock);
+    uint64_t bytes = 0;
+    for (const auto &one : begun) bytes += one.second;
+    return bytes;
 }
 
 bool Loaders::is_idle() const {

@@ -8,11 +8,12 @@
 #include <deque>
 #include <mutex>
 #include <thread>
-#include <unordered_set>
+#include <unordered_map>
 
 struct LoadRequest {
     uint32_t tile;
     uint32_t rungs; // so many of them
+    uint64_t bytes; // of memory that it will take, roughly
     std::string path;
 };
 
@@ -38,9 +39,9 @@ class Loaders {
     // What has been finished since.
     std::vector<LoadedTile> take();
 
-    bool is_loading(uint32_t tile) const; // begun, and not taken yet
-    uint32_t loading() const;             // so many
-    bool is_idle() const;                 // nothing asked for, nothing under way, nothing to take
+    uint32_t loading() const;       // begun, and not taken yet
+    uint64_t loading_bytes() const; // of these
+    bool is_idle() const;           // nothing asked for, nothing under way, nothing to take
 
   private:
     void work();
@@ -49,7 +50,7 @@ class Loaders {
     mutable std::mutex lock;
     std::condition_variable has_work;
     std::deque<LoadRequest> queue;
-    std::unordered_set<uint32_t> begun;
+    std::unordered_map<uint32_t, uint64_t> begun; // tiles and bytes
     std::vector<LoadedTile> finished;
     bool is_ending = false;
     std::vector<std::thread> threads;

@@ -8,8 +8,8 @@
 namespace {
 
 constexpr uint32_t RUNGS_AHEAD = 4;                   // an octave: what has to be decoded again is then little
-constexpr uint64_t BYTES_A_TRIANGLE = 200;            // of memory, measured
-constexpr uint64_t BYTES_A_BASE = 1u << 17;           // of a tile of which nothing is known yet
+constexpr uint64_t BYTES_A_TRIANGLE = 256;            // of memory: 225 to 253 were measured
+constexpr uint64_t BYTES_A_BASE = 2u << 20;           // of a tile of which nothing is known yet
 constexpr size_t BYTES_A_FRAME = 1u << 20;            // to the graphics card, for tiles that have come
 constexpr std::ptrdiff_t DATA_TILES = 16;             // so many are read to learn the heights
 constexpr double LOWEST_M = -12000, HIGHEST_M = 9000; // until the roots have told
@@ -65,7 +65,7 @@ bool TerrainSet::open(std::string *error) {
     workspace.resize(scree_select_workspace(count) / sizeof(double) + 1);
     double lowest_m = HUGE_VAL, highest_m = -HUGE_VAL;
     for (uint32_t i = 0; i < count && parents[i] == UINT32_MAX; i++) {
-        LoadedTile root = load_tile({i, 1, manifest.path_of(tiles[i].id)}, world);
+        LoadedTile root = load_tile({i, 1, 0, manifest.path_of(tiles[i].id)}, world);
         if (root.mesh == nullptr) {
             *error = root.error;
             return false;
@@ -90,7 +90,7 @@ std::pair<double, double> TerrainSet::data_heights_m() {
     double lowest_m = HUGE_VAL, highest_m = -HUGE_VAL;
     for (uint32_t i = 0; i < tile_count(); i++) {
         if (tiles[i].id.zoom != zoom) continue;
-        LoadedTile tile = load_tile({i, 1, manifest.path_of(tiles[i].id)}, world);
+        LoadedTile tile = load_tile({i, 1, 0, manifest.path_of(tiles[i].id)}, world);
         if (tile.mesh == nullptr) continue;
         for (const TileVertex &vertex : tile.mesh->vertices) {
             bool is_inside = vertex.map[0] > 0 && vertex.map[0] < 65535 && vertex.map[1] > 0 && vertex.map[1] < 65535;
@@ -231,6 +231,12 @@ void TerrainSet::stitch_changed(bool stitched) {
     }
 }
 
+uint64_t TerrainSet::bytes_held() const {
+    uint64_t bytes = 0;
+    for (uint32_t tile : holding) bytes += held[tile].bytes;
+    return bytes;
+}
+
 void TerrainSet::tell_drawn() {
     told.tiles_drawn = (uint32_t)drawn.size();
     told.triangles = 0;
@@ -245,8 +251,7 @@ void TerrainSet::tell_drawn() {
     }
     told.tiles_held = (uint32_t)holding.size();
     told.tiles_loading = loaders == nullptr ? 0 : loaders->loading();
-    told.bytes_held = 0;
-    for (uint32_t tile : holding) told.bytes_held += held[tile].bytes;
+    told.bytes_held = bytes_held();
 }
 
 void TerrainSet::frame(const scree_view &view, const TerrainSettings &settings, double seconds) {
@@ -276,21 +281,28 @@ void TerrainSet::frame(const scree_view &view, const TerrainSettings &settings, 
 
 void TerrainSet::request(const TerrainSettings &settings) {
     std::deque<LoadRequest> requests;
-    uint64_t room = settings.memory_bytes > told.bytes_held ? settings.memory_bytes - told.bytes_held : 0;
-    auto ask = [&](uint32_t tile, uint32_t rungs) {
+    uint64_t taken = bytes_held() + (loaders == nullptr ? 0 : loaders->loading_bytes());
+    uint64_t room = settings.memory_bytes > taken ? settings.memory_bytes - taken : 0;
+    for (uint32_t tile : denied) is_final[tile] = 0;
+    denied.clear();
+    auto ask = [&](uint32_t tile, uint32_t rungs, bool is_awaited) {
         const scree_stream_header *header = tiles[tile].header;
         if (header != nullptr) rungs = std::min(rungs, header->rung_count);
         bool has_come =
             std::any_of(arrived.begin(), arrived.end(), [&](const LoadedTile &one) { return one.tile == tile; });
         if (is_final[tile] || has_come || rungs <= tiles[tile].rungs_ready) return;
         uint64_t bytes = header == nullptr ? BYTES_A_BASE : BYTES_A_TRIANGLE * header->rungs[rungs - 1].triangle_count;
-        if (bytes > room) return;
+        if (bytes > room) { // what there is of it has to do
+            if (is_awaited) denied.push_back(tile);
+            return;
+        }
         room -= bytes;
-        requests.push_back({tile, rungs, manifest.path_of(tiles[tile].id)});
+        requests.push_back({tile, rungs, bytes, manifest.path_of(tiles[tile].id)});
     };
-    for (uint32_t tile : cut->awaited()) ask(tile, UINT32_MAX);
+    for (uint32_t tile : cut->awaited()) ask(tile, UINT32_MAX, true);
+    for (uint32_t tile : denied) is_final[tile] = 1;
     for (uint32_t i = 0; i < selection.wanted_count; i++)
-        ask(wanted[i].tile, wanted[i].end_rung <= 1 ? 1 : wanted[i].end_rung + RUNGS_AHEAD);
+        ask(wanted[i].tile, wanted[i].end_rung <= 1 ? 1 : wanted[i].end_rung + RUNGS_AHEAD, false);
     if (loaders != nullptr) return loaders->want(std::move(requests));
     for (const LoadRequest &one : requests) take(load_tile(one, world));
 }
@@ -304,8 +316,7 @@ void TerrainSet::drop(uint32_t tile) {
 
 // The tiles that have not been drawn for longest go first, and no tile before those below it.
 void TerrainSet::make_room(uint64_t memory_bytes) {
-    uint64_t bytes = 0;
-    for (uint32_t tile : holding) bytes += held[tile].bytes;
+    uint64_t bytes = bytes_held();
     if (bytes <= memory_bytes - memory_bytes / 8) return;
     std::vector<uint32_t> oldest = holding;
     std::sort(oldest.begin(), oldest.end(), [this](uint32_t a, uint32_t b) {

@@ -52,6 +52,7 @@ class TerrainSet {
     void seek();
     void find_neighbours();
     void stitch_changed(bool stitched);
+    uint64_t bytes_held() const;
     void tell_drawn();
     void request(const TerrainSettings &settings);
     void make_room(uint64_t memory_bytes);
@@ -65,6 +66,7 @@ class TerrainSet {
     std::vector<uint32_t> parents;
     std::vector<Held> held;
     std::vector<char> is_final;    // nothing more will come: all of it is there, or the rest is broken
+    std::vector<uint32_t> denied;  // final only because there is no room for more of them now
     std::vector<uint32_t> holding; // tiles with a mesh
     std::unique_ptr<MovingCut> cut;
     scree_selection selection = {};
