@@ -20,6 +20,7 @@ struct squares {
 struct wlop {
     const struct method_tile *tile;
     double cell_x_m, cell_y_m, radius2_m2;
+    double steps_a_m2;        /* of the table of weights */
     int32_t reach_x, reach_y; /* posts */
     double weights[TABLE_STEPS + 2];
     struct vector3 *posts_m;   /* of the whole grid */
@@ -40,7 +41,7 @@ static void make_weights(struct wlop *w) {
 
 /* exp(-16 d2 / radius^2) to about 3e-5 of itself, by a table: faster than exp, and the same bits everywhere. */
 static double weight_at(const struct wlop *w, double distance2) {
-    double at = distance2 / w->radius2_m2 * TABLE_STEPS;
+    double at = distance2 * w->steps_a_m2;
     int32_t step = (int32_t)at;
     return w->weights[step] + (at - step) * (w->weights[step + 1] - w->weights[step]);
 }
@@ -183,6 +184,7 @@ static void set_radius(struct wlop *w, double radius_m) {
     if (radius_m == 0) radius_m = WLOP_RADIUS_CELLS * 0.5 * (w->cell_x_m + w->cell_y_m);
     radius_m = fmax(fmin(radius_m, widest_m), 1e-6 * widest_m);
     w->radius2_m2 = radius_m * radius_m;
+    w->steps_a_m2 = TABLE_STEPS / w->radius2_m2;
     w->reach_x = (int32_t)fmin(ceil(radius_m / w->cell_x_m), WLOP_REACH_CELLS);
     w->reach_y = (int32_t)fmin(ceil(radius_m / w->cell_y_m), WLOP_REACH_CELLS);
     w->squares.side_m = fmax(radius_m, fmax(w->cell_x_m, w->cell_y_m));
