@@ -270,11 +270,13 @@ cleanup:
     return SCREE_OK;
 }
 
-/* A code as a place along a side of the method's tile; the ends are where they are, whatever their codes. */
+/* A code as a place along a side of the method's tile; the ends are where they are, whatever their codes. Where there
+ * are no more lattice steps than codes, the code of one means that step. */
 static double place_of(int32_t code, int32_t end, int64_t span, int32_t steps, double whole) {
     if (code == 0 || code == end) return code == 0 ? 0 : whole;
-    double place = (double)code * (double)span / POSITION_TOP * (whole / steps);
-    return fmin(place, nextafter(whole, 0));
+    double place = (double)code * (double)span / POSITION_TOP, step = floor(place + 0.5);
+    if (span <= POSITION_TOP && position_code((int64_t)step, span) == code) place = step;
+    return fmin(place * (whole / steps), nextafter(whole, 0));
 }
 
 enum scree_status method_from_codes_new(struct scree_memory *memory, const struct method_tile *tile,

@@ -1,5 +1,6 @@
 #include "src/mesh_residual.h"
 
+#include "lod/position_code.h"
 #include "src/verify_tile.h"
 
 #include <math.h>
@@ -152,10 +153,10 @@ static void scan_triangle(const struct scan *scan, const struct corner corners[3
     }
 }
 
-/* A code as lattice steps: the post that it names, where there are no more posts than codes. */
+/* A code as lattice steps: the post that it names, if it names one and there are no more posts than codes. */
 static double position_steps(uint32_t code, int64_t span) {
-    double steps = code * (double)span / DECODED_TOP;
-    return span <= DECODED_TOP ? floor(steps + 0.5) : steps;
+    double steps = code * (double)span / DECODED_TOP, post = floor(steps + 0.5);
+    return span <= DECODED_TOP && position_code((int64_t)post, span) == (int32_t)code ? post : steps;
 }
 
 static struct scan scan_of(const struct lattice *lattice, struct tile_id id, const struct post_block *block,

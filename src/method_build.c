@@ -2,6 +2,7 @@
 
 #include "lod/method_codes.h"
 #include "lod/method_error.h"
+#include "lod/position_code.h"
 #include "lod/quadric.h"
 #include "lod/tile_lines.h"
 #include "src/methods.h"
@@ -74,15 +75,34 @@ enum scree_status method_build_hand_up(const struct tile_plan *plan, struct tile
 
 /* ---- figures ---- */
 
-static enum scree_status measure_errors(const struct method_view *view, const struct scree_mesh *coded,
-                                        struct scree_memory *memory, struct terrain_tile_statistics *statistics,
-                                        struct scree_error *error) {
+/* A method takes the ellipsoid to be as round everywhere as it is in the middle of the tile. How far that may be off
+ * where its triangles are. */
+static double largest_bend_m(const struct lattice *lattice, struct tile_id id, const struct scree_mesh *coded) {
+    struct lattice_window window = lattice_tile_window(lattice, id);
+    double steps = (double)lattice_tile_span(lattice, id.zoom) / POSITION_TOP, largest_m = 0;
+    double middle_m = lattice_parallel_drop_m(lattice, (double)window.y + 0.5 * window.rows);
+    if (lattice->profile != PROFILE_GEODETIC) return 0;
+    for (uint32_t t = 0; t < coded->triangle_count; t++) {
+        const uint32_t *corner = coded->corners + 3 * (size_t)t;
+        const struct scree_vertex *a = &coded->vertices[corner[0]], *b = &coded->vertices[corner[1]];
+        const struct scree_vertex *c = &coded->vertices[corner[2]];
+        double width = steps * (fmax(a->x, fmax(b->x, c->x)) - fmin(a->x, fmin(b->x, c->x)));
+        double row = (double)window.y + steps * ((double)a->y + b->y + c->y) / 3;
+        double off_m = fabs(lattice_parallel_drop_m(lattice, row) - middle_m);
+        largest_m = fmax(largest_m, off_m * 0.25 * width * width);
+    }
+    return largest_m;
+}
+
+static enum scree_status measure_errors(const struct tile_plan *plan, struct tile_id id, const struct method_view *view,
+                                        const struct scree_mesh *coded, struct scree_memory *memory,
+                                        struct terrain_tile_statistics *statistics, struct scree_error *error) {
     struct method_mesh drawn;
     struct method_error errors = {0};
     enum scree_status status = method_from_codes_new(memory, &view->tile, &view->frame, coded, &drawn, error);
     if (status == SCREE_OK) status = method_error_measure(memory, &view->tile, &drawn, &errors, error);
     method_mesh_release(memory, &drawn);
-    statistics->max_error_m = errors.max_m;
+    statistics->max_error_m = errors.max_m + largest_bend_m(plan->lattice, id, coded);
     return status;
 }
 
@@ -170,7 +190,7 @@ enum scree_status method_build_write(const struct tile_plan *plan, struct tile_i
     if (status == SCREE_OK)
         status = method_build_encode(plan, id, tile, &view, &mesh, &coded, &bytes, &size_bytes, error);
     method_mesh_release(memory, &mesh);
-    if (status == SCREE_OK) status = measure_errors(&view, &coded, memory, statistics, error);
+    if (status == SCREE_OK) status = measure_errors(plan, id, &view, &coded, memory, statistics, error);
     if (status == SCREE_OK) status = measure_scale(&view, &coded, memory, statistics, error);
     if (status == SCREE_OK)
         status = tile_store_write(store, id, bytes, size_bytes, !plan->plain, &written_bytes, error);
