@@ -3,6 +3,7 @@
 #include "src/mesh_file_io.h"
 #include "src/raster_arguments.h"
 #include "src/remesh.h"
+#include "src/remesh_read_io.h"
 
 #include <cpl_conv.h>
 #include <math.h>
@@ -12,7 +13,6 @@
 
 #define DEFAULT_THRESHOLD   1.0
 #define DEFAULT_REACH_POSTS 64
-#define ROWS_AT_ONCE        256
 #define MRAD                1e3
 
 static const char help[] =
@@ -111,103 +111,64 @@ static int parse(int argc, char **argv, struct arguments *arguments) {
 
 struct job {
     struct scree_memory memory;
-    struct raster *raster;
-    struct raster_reader *reader;
-    float *heights_m;
-    struct lattice local, lattice; /* in the units of the raster's CRS, and with lengths on Earth */
+    struct remesh_raster raster;
     struct quadtree tree;
     struct quadtree_view view;
     struct quadtree_mesh made;
     struct extract_mesh placed;
+    struct remesh_error measured;
 };
 
-static enum scree_status open_raster(const struct raster_options *options, struct job *job, struct scree_error *error) {
-    enum scree_status status = raster_open(options, &job->raster, error);
-    if (status != SCREE_OK) return status;
-    const struct raster_summary *summary = raster_summary(job->raster);
-    if (summary->columns > CURVATURE_MAX_POSTS || summary->rows > CURVATURE_MAX_POSTS)
-        return scree_fail(error, SCREE_E_LIMIT,
-                          "%s: %lld x %lld posts are more than the %d a side that fit a quadtree; crop with --te",
-                          options->inputs[0], (long long)summary->columns, (long long)summary->rows,
-                          CURVATURE_MAX_POSTS);
-    status = lattice_local(summary->columns, summary->rows, summary->bounds[0], summary->bounds[1], summary->spacing_x,
-                           summary->spacing_y, summary->metres_per_unit, &job->local, error);
-    if (status != SCREE_OK) return status;
-    job->lattice = remesh_lattice(&job->local, summary->metres_per_unit);
-    const double south_deg = job->lattice.south, north_deg = lattice_y(&job->lattice, (double)summary->rows - 1);
-    if (job->lattice.profile == PROFILE_GEODETIC && (south_deg < -91 || north_deg > 91))
-        return scree_fail(error, SCREE_E_ARGUMENT,
-                          "%s: latitudes of %g to %g are not on Earth; name its CRS with --s_srs", options->inputs[0],
-                          south_deg, north_deg);
-    status = raster_place(job->raster, &job->local, error);
-    return status == SCREE_OK ? raster_reader_new(job->raster, &job->reader, error) : status;
-}
-
-static enum scree_status read_heights(struct job *job, struct scree_error *error) {
-    const int32_t columns = (int32_t)job->local.columns, rows = (int32_t)job->local.rows;
-    enum scree_status status = SCREE_OK;
-    job->heights_m = scree_allocate(&job->memory, (size_t)columns * (size_t)rows, sizeof *job->heights_m,
-                                    "the raster's heights", error);
-    if (job->heights_m == NULL) return SCREE_E_MEMORY;
-    for (int32_t y = 0; y < rows && status == SCREE_OK; y += ROWS_AT_ONCE) {
-        int32_t here = rows - y < ROWS_AT_ONCE ? rows - y : ROWS_AT_ONCE;
-        status = raster_read(job->reader, 0, y, columns, here, job->heights_m + (int64_t)y * columns, columns, error);
-    }
-    return status;
-}
-
 static void set_view(const struct arguments *arguments, struct job *job) {
-    const struct curvature_posts *posts = &job->tree.posts;
+    const struct lattice *local = &job->raster.local;
+    const struct curvature_posts *posts = &job->raster.posts;
     job->view = (struct quadtree_view){.threshold = arguments->threshold, .has_observer = arguments->has_observer};
     if (!arguments->has_observer) return;
-    job->view.x = (arguments->observer[0] - job->local.west) / job->local.spacing_x;
-    job->view.y = (arguments->observer[1] - job->local.south) / job->local.spacing_y;
+    job->view.x = (arguments->observer[0] - local->west) / local->spacing_x;
+    job->view.y = (arguments->observer[1] - local->south) / local->spacing_y;
     job->view.height_m = arguments->observer[2];
     job->view.reach_m = arguments->reach_m;
     if (job->view.reach_m <= 0) job->view.reach_m = DEFAULT_REACH_POSTS * sqrt(posts->east_m * posts->north_m);
 }
 
-static enum scree_status tell(const struct arguments *arguments, struct job *job, const double middle[2],
-                              struct scree_error *error) {
-    const struct curvature_posts *posts = &job->tree.posts;
+static void tell(const struct arguments *arguments, const struct job *job, const double middle[2]) {
+    const struct curvature_posts *posts = &job->raster.posts;
     const struct scree_mesh *mesh = &job->made.mesh;
     const struct extract_mesh *placed = &job->placed;
-    struct remesh_error measured;
-    enum scree_status status = remesh_measure(&job->memory, posts, mesh, &job->view, &measured, error);
-    if (status != SCREE_OK) return status;
+    const struct remesh_error *measured = &job->measured;
     const double all = 2.0 * (posts->columns - 1) * (posts->rows - 1);
     printf("%s: %u vertices, %u triangles, %.3g %% of the full grid's; max error %.4g m, RMS %.4g m\n",
            arguments->output, (unsigned)mesh->vertex_count, (unsigned)mesh->triangle_count,
-           100 * mesh->triangle_count / all, measured.max_m, measured.rms_m);
+           100 * mesh->triangle_count / all, measured->max_m, measured->rms_m);
     if (job->view.has_observer)
-        printf("as the observer sees it: max error %.4g mrad, RMS %.4g mrad\n", MRAD * measured.max_rad,
-               MRAD * measured.rms_rad);
-    if (job->lattice.profile == PROFILE_GEODETIC)
+        printf("as the observer sees it: max error %.4g mrad, RMS %.4g mrad\n", MRAD * measured->max_rad,
+               MRAD * measured->rms_rad);
+    if (job->raster.lattice.profile == PROFILE_GEODETIC)
         printf("in metres east, north and up of %.8g, %.8g\n", middle[0], middle[1]);
     else
         printf("in metres of height over x and y of the raster's CRS\n");
     if (placed->origin[0] != 0 || placed->origin[1] != 0 || placed->origin[2] != 0)
         printf("add %.0f, %.0f, %.0f to its coordinates, which are too large for the floats of such files\n",
                placed->origin[0], placed->origin[1], placed->origin[2]);
-    return SCREE_OK;
 }
 
 static enum scree_status remesh(const struct arguments *arguments, struct job *job, struct scree_error *error) {
+    const struct remesh_raster *raster = &job->raster;
     double middle[2];
-    enum scree_status status = open_raster(&arguments->raster, job, error);
-    if (status == SCREE_OK) status = read_heights(job, error);
-    if (status != SCREE_OK) return status;
-    const struct curvature_posts posts = remesh_posts(&job->lattice, job->heights_m);
-    status = quadtree_make(&job->memory, &posts, &job->tree, error);
+    enum scree_status status = remesh_read(&job->memory, &arguments->raster, &job->raster, error);
+    if (status == SCREE_OK) status = quadtree_make(&job->memory, &raster->posts, &job->tree, error);
     if (status != SCREE_OK) return status;
     set_view(arguments, job);
     status = quadtree_extract(&job->memory, &job->tree, &job->view, &job->made, error);
+    if (status == SCREE_OK && !arguments->quiet)
+        status = remesh_measure(&job->memory, &raster->posts, &job->made.mesh, &job->view, &job->measured, error);
     if (status == SCREE_OK)
-        status = remesh_place(&job->memory, &job->lattice, &posts, &job->made.mesh, &job->placed, middle, error);
+        status =
+            remesh_place(&job->memory, &raster->lattice, &raster->posts, &job->made.mesh, &job->placed, middle, error);
     if (status == SCREE_OK)
         status = mesh_file_write(arguments->output, job->placed.xyz, job->placed.vertex_count, job->placed.corners,
                                  job->placed.triangle_count, error);
-    if (status == SCREE_OK && !arguments->quiet) status = tell(arguments, job, middle, error);
+    if (status == SCREE_OK && !arguments->quiet) tell(arguments, job, middle);
     return status;
 }
 
@@ -218,9 +179,7 @@ static int run(const struct arguments *arguments) {
     extract_mesh_free(&job.memory, &job.placed);
     quadtree_mesh_release(&job.memory, &job.made);
     quadtree_release(&job.memory, &job.tree);
-    scree_release(&job.memory, job.heights_m);
-    raster_reader_free(job.reader);
-    raster_free(job.raster);
+    remesh_raster_free(&job.memory, &job.raster);
     if (status == SCREE_OK) return EXIT_DONE;
     fprintf(stderr, "scree remesh: %s\n", error.text);
     return EXIT_FAILED;
