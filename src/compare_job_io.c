@@ -32,7 +32,7 @@ struct compare_job {
     struct level levels[MAX_ZOOM + 1];
     void (*progress)(void *context, uint32_t tiles_done, uint32_t tiles_in_all);
     void *progress_context;
-    const char *names[COMPARE_MOST_METHODS];
+    const char *names[COMPARE_MOST_METHODS], *main_options[COMPARE_MOST_METHODS];
     struct compare_zoom zooms[MAX_ZOOM + 1];
     struct compare_entry *entries; /* of the report */
     struct compare_report report;
@@ -241,7 +241,11 @@ static enum scree_status prepare(struct compare_job *job, struct scree_error *er
     job->plan = (struct tile_plan){.lattice = &job->build.lattice,
                                    .ladder = &job->build.ladder,
                                    .nodata_height_m = job->options->build.raster.nodata_height_m};
-    for (int i = 0; i < job->options->method_count; i++) job->names[i] = job->options->names[i];
+    for (int i = 0; i < job->options->method_count; i++) {
+        const struct method *method = job->options->methods[i].method;
+        job->names[i] = job->options->names[i];
+        job->main_options[i] = method->option_count > 0 ? method->options[0].name : "";
+    }
     return file_make_folder(job->options->build.out, error);
 }
 
@@ -305,6 +309,7 @@ static enum scree_status assemble(struct compare_job *job, const uint32_t touche
     *report = (struct compare_report){.dem = options->build.raster.inputs[0],
                                       .method_count = options->method_count,
                                       .methods = job->names,
+                                      .main_options = job->main_options,
                                       .zooms = job->zooms,
                                       .entries = job->entries};
     for (int zoom = 0; zoom <= MAX_ZOOM; zoom++) {

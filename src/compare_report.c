@@ -4,9 +4,11 @@
 #include "src/json_text.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #define TRIANGLE_SLACK 0.02
+#define OPTIONS_ROOM   384
 
 /* ---- means ---- */
 
@@ -53,6 +55,19 @@ static struct compare_means means_of(const struct compare_report *report, const 
     return compare_means_of(entry, compare_tile_count(report, entry));
 }
 
+/* All options, with the values that the main one took on where a number of triangles was wanted. */
+static void tell_options(const struct compare_report *report, const struct compare_entry *entry, char *told,
+                         size_t room) {
+    const struct compare_means means = means_of(report, entry);
+    const char *name = report->main_options[entry->method], *gap = entry->options[0] != '\0' ? " " : "";
+    if (entry->wanted_triangles == 0 || name[0] == '\0')
+        snprintf(told, room, "%s", entry->options);
+    else if (means.main_low == means.main_high)
+        snprintf(told, room, "%s=%.4g%s%s", name, means.main_low, gap, entry->options);
+    else
+        snprintf(told, room, "%s=%.4g..%.4g%s%s", name, means.main_low, means.main_high, gap, entry->options);
+}
+
 /* ---- CSV ---- */
 
 void compare_add_csv(const struct compare_report *report, struct text *text) {
@@ -61,10 +76,12 @@ void compare_add_csv(const struct compare_report *report, struct text *text) {
     for (uint32_t i = 0; i < report->entry_count; i++) {
         const struct compare_entry *entry = &report->entries[i];
         const struct compare_means means = means_of(report, entry);
+        char options[OPTIONS_ROOM];
         text_add(text, "%d,", entry->zoom);
         text_add_csv(text, report->methods[entry->method]);
         text_add(text, ",");
-        text_add_csv(text, entry->options);
+        tell_options(report, entry, options, sizeof options);
+        text_add_csv(text, options);
         text_add(text, ",");
         if (entry->wanted_triangles != 0) text_add(text, "%u", (unsigned)entry->wanted_triangles);
         text_add(text, ",%u,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n",
@@ -121,8 +138,10 @@ static void add_markdown_table(const struct compare_report *report, uint32_t fir
     for (uint32_t i = first; i < report->entry_count && (i == first || !begins_table(report, i)); i++) {
         const struct compare_entry *entry = &report->entries[i];
         const struct compare_means means = means_of(report, entry);
+        char options[OPTIONS_ROOM];
+        tell_options(report, entry, options, sizeof options);
         text_add(text, "| %s | %s | %.4f | %.1f | %.1f%s | %.2f | %.2f | %.2f | %.3f | %.0f |\n",
-                 report->methods[entry->method], entry->options, means.cpu_s, means.vertices, means.triangles,
+                 report->methods[entry->method], options, means.cpu_s, means.vertices, means.triangles,
                  means.has_wanted_triangles ? "" : " (!)", means.hausdorff_m, means.hausdorff_max_m, means.max_error_m,
                  means.rms_error_m, means.bytes);
     }
@@ -220,12 +239,14 @@ static void put_tile(struct json_text *json, const struct compare_figures *tile)
 
 static void put_entry(struct json_text *json, const struct compare_report *report, const struct compare_entry *entry) {
     const struct compare_means means = means_of(report, entry);
+    char options[OPTIONS_ROOM];
+    tell_options(report, entry, options, sizeof options);
     json_open(json, '{');
     put_number(json, "zoom", entry->zoom);
     json_key(json, "method");
     json_string(json, report->methods[entry->method]);
     json_key(json, "options");
-    json_string(json, entry->options);
+    json_string(json, options);
     if (entry->wanted_triangles != 0) put_number(json, "wanted_triangles", entry->wanted_triangles);
     put_number(json, "cpu_s", means.cpu_s);
     put_number(json, "vertices", means.vertices);

@@ -27,7 +27,7 @@ struct compare_entry {
     int zoom;
     int method;                    /* of the report's */
     uint32_t wanted_triangles;     /* 0: as many as the options give */
-    char options[256];             /* as they were at this zoom; "" when there are none */
+    char options[256];             /* as they were at this zoom, without the main one where triangles are wanted */
     struct compare_figures *tiles; /* one a tile of the zoom, in the same order for all methods */
     char picture[64];              /* a file beside the report; "": none was drawn */
     uint32_t picture_triangles;
@@ -46,7 +46,8 @@ struct compare_zoom {
 struct compare_report {
     const char *dem; /* its name */
     int method_count;
-    const char *const *methods; /* names */
+    const char *const *methods;      /* names */
+    const char *const *main_options; /* of each method: what decides the number of triangles; "": it has no options */
     uint32_t zoom_count, entry_count;
     const struct compare_zoom *zooms;    /* from coarse to fine */
     const struct compare_entry *entries; /* by zoom, then by wanted triangles, then by method */

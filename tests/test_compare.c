@@ -9,6 +9,7 @@
 
 #include <CUnit/CUnit.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
@@ -218,7 +219,7 @@ struct made_report {
     struct compare_figures figures[4];
     struct compare_zoom zoom;
     struct compare_entry entries[2];
-    const char *methods[2];
+    const char *methods[2], *main_options[2];
     struct compare_report report;
 };
 
@@ -227,10 +228,14 @@ static void make_report(struct made_report *made, uint32_t wanted) {
         .figures = {figures_of(0, 1000, 4, 3), figures_of(1, 1030, 8, 4), figures_of(0, 500, 1, 1),
                     figures_of(1, 700, 3, 1)},
         .zoom = {.zoom = 9, .tile_count = 2, .tiles_in_all = 5, .tolerance_m = 20, .picture = "posts.png"},
-        .methods = {"first", "second, \"b\""}};
+        .methods = {"first", "second, \"b\""},
+        .main_options = {"e", ""}};
     made->entries[0] = (struct compare_entry){9, 0, wanted, "e=2.5", made->figures, "first.png", 1000};
+    if (wanted != 0) snprintf(made->entries[0].options, sizeof made->entries[0].options, "f=1");
+    if (wanted != 0) made->figures[1].main_value = 3;
     made->entries[1] = (struct compare_entry){9, 1, wanted, "", made->figures + 2, "", 0};
-    made->report = (struct compare_report){"dem.tif", 2, made->methods, 1, 2, &made->zoom, made->entries};
+    made->report =
+        (struct compare_report){"dem.tif", 2, made->methods, made->main_options, 1, 2, &made->zoom, made->entries};
 }
 
 static void means_are_over_tiles_and_posts(void) {
@@ -282,6 +287,7 @@ static void the_report_says_the_same_in_all_forms(void) {
     made.zoom.is_cut = true;
     compare_add_markdown(&made.report, &page);
     CU_ASSERT_TRUE(says(&page, "one tile, which the raster's border cuts, 1000 triangles"));
+    CU_ASSERT_TRUE(says(&page, "| first | e=2.5..3 f=1 | "));
     CU_ASSERT_TRUE(says(&page, "1015.0 (!) |"));
     CU_ASSERT_TRUE(says(&page, "\n(!) "));
     text_free(&page);
