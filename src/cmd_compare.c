@@ -19,11 +19,12 @@ static const char help[] =
     "static tile. Writes DIR/compare.md, compare.csv (a line a method and zoom), tiles.csv (a line a tile), charts\n"
     "and pictures of the meshes. scree build --method list tells which methods there are.\n\n"
     "  -o DIR               folder to write to\n"
-    "  --methods LIST       methods with commas between them; default: all\n"
+    "  --methods LIST       methods with commas between them, default: all; LABEL=METHOD gives one another name, and\n"
+    "                       lets it come twice, with other options\n"
     "  --method-option METHOD:NAME=VALUE   an option of one of them, as of scree build\n"
     "  --zooms LIST         zooms with commas between them, or FIRST-LAST; default: all that have full tiles\n"
-    "  --triangles LIST     as many triangles a tile, to 2 %, whatever the method: its first option is chosen so;\n"
-    "                       several numbers, with commas, make curves\n"
+    "  --triangles LIST     as many triangles a tile, to 2 %, whatever the method: its first option is chosen so, or\n"
+    "                       the one whose VALUE is ?; several numbers, with commas, make curves\n"
     "  --profile NAME       geodetic (default) or local (the raster's own CRS and pixels)\n"
     "  --max-zoom Z         finest zoom; default: the first that is as fine as the source\n"
     "  --error M            tolerance in metres at zoom 0, halving with each zoom: of the borders, and of methods "
@@ -64,17 +65,20 @@ static bool take_item(const char **list, char *item, size_t room) {
 static enum scree_status take_methods(const char *list, struct compare_options *options, struct scree_error *error) {
     enum scree_status status = SCREE_OK;
     for (options->method_count = 0; *list != '\0' && status == SCREE_OK; options->method_count++) {
-        char name[sizeof options->names[0]];
+        char name[sizeof options->names[0]], *method;
         int at = options->method_count;
         if (at == COMPARE_MOST_METHODS || !take_item(&list, name, sizeof name))
             return scree_fail(error, SCREE_E_ARGUMENT,
                               "--methods wants up to %d names with commas between them, not %s", COMPARE_MOST_METHODS,
                               list);
+        if ((method = strchr(name, '=')) != NULL) *method++ = '\0'; /* LABEL=METHOD */
+        if (name[strcspn(name, ":/")] != '\0' || name[0] == '\0')
+            return scree_fail(error, SCREE_E_ARGUMENT, "--methods wants names without : and /, not %s", name);
         for (int i = 0; i < at; i++)
             if (strcmp(options->names[i], name) == 0)
                 return scree_fail(error, SCREE_E_ARGUMENT, "--methods names %s twice", name);
         memcpy(options->names[at], name, sizeof name);
-        status = method_choose(name, &options->methods[at], error);
+        status = method_choose(method != NULL ? method : name, &options->methods[at], error);
     }
     return status;
 }
@@ -126,12 +130,27 @@ static bool take_error_at(const char *text, struct ladder_options *ladder) {
     return true;
 }
 
+/* NAME=? of one of the methods: what is looked for. */
+static enum scree_status set_main_option(const char *text, struct compare_options *options, int at,
+                                         struct scree_error *error) {
+    const struct method *method = options->methods[at].method;
+    size_t length = strlen(text) - 2;
+    for (int i = 0; i < method->option_count; i++)
+        if (strlen(method->options[i].name) == length && strncmp(method->options[i].name, text, length) == 0)
+            return options->main_options[at] = i, SCREE_OK;
+    return scree_fail(error, SCREE_E_ARGUMENT, "method %s has no option %.*s", method->name, (int)length, text);
+}
+
 /* METHOD:NAME=VALUE, once all methods are known. */
 static enum scree_status set_option(const char *text, struct compare_options *options, struct scree_error *error) {
     size_t length = strcspn(text, ":=");
-    for (int i = 0; i < options->method_count && text[length] == ':'; i++)
-        if (strlen(options->names[i]) == length && strncmp(options->names[i], text, length) == 0)
-            return method_set(&options->methods[i], text + length + 1, error);
+    for (int i = 0; i < options->method_count && text[length] == ':'; i++) {
+        const char *assignment = text + length + 1;
+        size_t equals = strcspn(assignment, "=");
+        if (strlen(options->names[i]) != length || strncmp(options->names[i], text, length) != 0) continue;
+        return strcmp(assignment + equals, "=?") == 0 ? set_main_option(assignment, options, i, error)
+                                                      : method_set(&options->methods[i], assignment, error);
+    }
     if (text[length] != ':')
         return scree_fail(error, SCREE_E_ARGUMENT, "--method-option wants METHOD:NAME=VALUE, not %s", text);
     return scree_fail(error, SCREE_E_ARGUMENT, "--method-option %s: %.*s is not among the methods compared", text,

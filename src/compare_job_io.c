@@ -77,7 +77,8 @@ static void tell_options(const struct compare_outcome *outcome, const struct com
     const struct method *method = task->choice->method;
     size_t length = 0;
     text[0] = '\0';
-    for (int i = task->wanted_triangles != 0; i < method->option_count && length < room; i++) {
+    for (int i = 0; i < method->option_count && length < room; i++) {
+        if (task->wanted_triangles != 0 && i == task->main_option) continue;
         if (outcome->values[i] != outcome->values[i]) continue; /* NAN: not given, the method decides */
         length += (size_t)snprintf(text + length, room - length, "%s%s=%.6g", length > 0 ? " " : "",
                                    method->options[i].name, outcome->values[i]);
@@ -173,13 +174,14 @@ static enum scree_status run_entry(struct visit *visit, struct compare_entry *en
     struct compare_job *job = visit->job;
     struct scree_error why = {0};
     const struct compare_task task = {&job->options->methods[entry->method], visit->id.zoom,
-                                      job->plan.ladder->tolerance_m[visit->id.zoom], entry->wanted_triangles};
+                                      job->plan.ladder->tolerance_m[visit->id.zoom], entry->wanted_triangles,
+                                      job->options->main_options[entry->method]};
     struct compare_outcome outcome;
     struct compare_figures figures = {0};
     enum scree_status status = compare_run(&job->memory, &task, &visit->view.tile, &outcome, &why);
     if (status == SCREE_OK) {
         figures.cpu_s = outcome.cpu_s;
-        figures.main_value = outcome.values[0];
+        figures.main_value = outcome.values[task.main_option];
         tell_options(&outcome, &task, entry->options, sizeof entry->options);
         status = measure(visit, entry, &outcome, &figures, &why);
         method_mesh_release(&job->memory, &outcome.mesh);
@@ -244,7 +246,7 @@ static enum scree_status prepare(struct compare_job *job, struct scree_error *er
     for (int i = 0; i < job->options->method_count; i++) {
         const struct method *method = job->options->methods[i].method;
         job->names[i] = job->options->names[i];
-        job->main_options[i] = method->option_count > 0 ? method->options[0].name : "";
+        job->main_options[i] = method->option_count > 0 ? method->options[job->options->main_options[i]].name : "";
     }
     return file_make_folder(job->options->build.out, error);
 }
@@ -252,13 +254,16 @@ static enum scree_status prepare(struct compare_job *job, struct scree_error *er
 /* Options that are missing or out of range at a zoom are told before any work is done. */
 static enum scree_status check_options(const struct compare_job *job, int min_zoom, int max_zoom,
                                        struct scree_error *error) {
+    const struct compare_options *options = job->options;
     double values[METHOD_MAX_OPTIONS];
     enum scree_status status = SCREE_OK;
     for (int zoom = min_zoom; zoom <= max_zoom; zoom++)
-        for (int i = 0; i < job->options->method_count && status == SCREE_OK; i++)
-            if (!job->options->zooms_are_named || job->options->zooms[zoom])
-                status = method_values_at(&job->options->methods[i], zoom, job->plan.ladder->tolerance_m[zoom], values,
-                                          error);
+        for (int i = 0; i < options->method_count && status == SCREE_OK; i++) {
+            const struct compare_task task = {&options->methods[i], zoom, job->plan.ladder->tolerance_m[zoom],
+                                              options->count_count > 0 ? options->counts[0] : 0,
+                                              options->main_options[i]};
+            if (!options->zooms_are_named || options->zooms[zoom]) status = compare_values_at(&task, values, error);
+        }
     return status;
 }
 

@@ -13,7 +13,8 @@ struct compare_options {
     struct build_options build; /* rasters, lattice, ladder; its `out` is the folder of the report */
     int method_count;
     struct method_choice methods[COMPARE_MOST_METHODS];
-    char names[COMPARE_MOST_METHODS][64];
+    char names[COMPARE_MOST_METHODS][64];   /* what they are called in the report */
+    int main_options[COMPARE_MOST_METHODS]; /* what is looked for where triangles are wanted: of each the index */
     int count_count; /* how many numbers of triangles are wanted; 0: as many as the options give */
     uint32_t counts[COMPARE_MOST_COUNTS];
     bool zooms_are_named;

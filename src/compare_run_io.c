@@ -58,7 +58,7 @@ static enum scree_status try_value(struct search *search, double value, struct t
                                    struct scree_error *error) {
     struct compare_outcome outcome = *search->best;
     outcome.mesh = (struct method_mesh){0};
-    outcome.values[0] = value;
+    outcome.values[search->task->main_option] = value;
     enum scree_status status = run_once(search->memory, search->task, search->tile, &outcome, error);
     if (status != SCREE_OK) return status;
     search->runs++;
@@ -135,7 +135,7 @@ static enum scree_status narrow(struct search *search, struct scree_error *error
 static enum scree_status find_triangles(struct scree_memory *memory, const struct compare_task *task,
                                         const struct method_tile *tile, struct compare_outcome *outcome,
                                         struct scree_error *error) {
-    const struct method_option *option = &task->choice->method->options[0];
+    const struct method_option *option = &task->choice->method->options[task->main_option];
     struct search search = {.memory = memory,
                             .task = task,
                             .tile = tile,
@@ -143,7 +143,7 @@ static enum scree_status find_triangles(struct scree_memory *memory, const struc
                             .factor = FIRST_FACTOR,
                             .best = outcome,
                             .best_off = HUGE_VAL};
-    double start = isnan(outcome->values[0]) ? task->wanted_triangles : outcome->values[0];
+    double start = outcome->values[task->main_option];
     enum scree_status status = try_value(&search, bounded(option, start), &search.low, error);
     search.high = search.low;
     if (status == SCREE_OK) status = widen(&search, error);
@@ -151,11 +151,25 @@ static enum scree_status find_triangles(struct scree_memory *memory, const struc
     return status;
 }
 
+enum scree_status compare_values_at(const struct compare_task *task, double values[METHOD_MAX_OPTIONS],
+                                    struct scree_error *error) {
+    struct method_choice choice = *task->choice;
+    if (task->wanted_triangles != 0 && choice.method->option_count > 0) {
+        const struct method_option *option = &choice.method->options[task->main_option];
+        struct method_setting *setting = &choice.settings[task->main_option];
+        if (setting->count == 0 && isnan(option->standard) && option->tolerance_part == 0) {
+            *setting = (struct method_setting){.count = 1, .growth = 1};
+            setting->list[0].value = bounded(option, task->wanted_triangles);
+        }
+    }
+    return method_values_at(&choice, task->zoom, task->tolerance_m, values, error);
+}
+
 enum scree_status compare_run(struct scree_memory *memory, const struct compare_task *task,
                               const struct method_tile *tile, struct compare_outcome *outcome,
                               struct scree_error *error) {
     memset(outcome, 0, sizeof *outcome);
-    enum scree_status status = method_values_at(task->choice, task->zoom, task->tolerance_m, outcome->values, error);
+    enum scree_status status = compare_values_at(task, outcome->values, error);
     if (status == SCREE_OK) status = method_tile_check(tile, error);
     if (status != SCREE_OK) return status;
     bool is_searched = task->wanted_triangles != 0 && task->choice->method->option_count > 0;

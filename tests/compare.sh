@@ -57,7 +57,8 @@ hausdorff_max_m,mean_distance_m,max_error_m,rms_error_m,bytes" ] || fail 'other 
 [ "$(field 3 zoom) $(field 3 method) $(field 3 tiles)" = '2 greedy 4' ] || fail 'the third line is of another kind'
 [ "$(wc -l <to/tiles.csv)" -eq 11 ] || fail 'ten lines of tiles were expected'
 grep -q '## Zoom 2, 4 full tiles of 9' to/compare.md || fail 'the page does not tell the tiles'
-grep -q '</svg>' to/hausdorff.svg && grep -q '</svg>' to/error.svg || fail 'a chart has no end'
+grep -q '</svg>' to/hausdorff.svg || fail 'the chart of distances has no end'
+grep -q '</svg>' to/error.svg || fail 'the chart of errors has no end'
 cut -d, -f1-5,7- to/compare.csv >first
 # shellcheck disable=SC2086
 compares $options -o to --methods greedy,random --picture-px 0
@@ -87,7 +88,14 @@ awk -v a="$(field 2 rms_error_m)" -v b="$(field 4 rms_error_m)" 'BEGIN {exit !(a
 # shellcheck disable=SC2086
 "$scree" compare dem.tif $options -o to --methods greedy --zooms 1-2 --picture-px 0 -q --format json >out 2>err ||
     fail 'no JSON'
-grep -q '"hausdorff_m": ' out && grep -q '"tiles_compared": 4' out || fail 'the JSON lacks something'
+grep -q '"hausdorff_m": ' out || fail 'the JSON has no distances'
+grep -q '"tiles_compared": 4' out || fail 'the JSON does not tell the tiles'
+# Twice the same method, the second time by another option.
+# shellcheck disable=SC2086
+compares $options -o to --methods greedy,by-grid=greedy --method-option by-grid:g_g=? --method-option by-grid:g_e=1e6 \
+    --triangles 3000 --zooms 2 --picture-px 0
+close "$(field 2 triangles)" 3000 0.1 || fail 'the grid has other triangles'
+awk -v a="$(field 1 rms_error_m)" -v b="$(field 2 rms_error_m)" 'BEGIN {exit !(a < b)}' || fail 'a grid is no worse'
 
 # A raster that is smaller than a tile, and degrees.
 "$TOP_BUILDDIR/tests/fractal_dem" -o small.tif --size 90 --rows 70 --epsg 32611 --spacing-m 30 || exit 99
@@ -111,6 +119,8 @@ refuses 2 'triangles wants' dem.tif -o to --triangles 500,x
 refuses 2 'METHOD:NAME=VALUE' dem.tif -o to --methods greedy --method-option g_e=5
 refuses 2 'not among' dem.tif -o to --methods greedy --method-option random:r_r=5
 refuses 2 'no option h' dem.tif -o to --methods greedy --method-option greedy:h=5
+refuses 2 'no option h' dem.tif -o to --methods greedy --method-option greedy:h=?
+refuses 2 'without : and /' dem.tif -o to --methods a/b=greedy
 refuses 2 'r_r of method random: 101' dem.tif -o to --methods random --method-option random:r_r=101
 refuses 2 'picture-px wants' dem.tif -o to --picture-px 5
 refuses 2 'format wants' dem.tif -o to --format xml

@@ -63,7 +63,7 @@ static struct found find(struct method_option option, uint32_t wanted,
                                                   struct method_mesh *, struct scree_error *)) {
     const struct method method = {"stand-in", "", 1, &option, NULL, run};
     const struct method_choice choice = {.method = &method};
-    const struct compare_task task = {&choice, 5, 100, wanted};
+    const struct compare_task task = {&choice, 5, 100, wanted, 0};
     const struct method_recipe recipe = {.columns = 2, .rows = 2};
     struct made_method_tile *made = made_method_tile_new(&recipe);
     struct compare_outcome outcome;
