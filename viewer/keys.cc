@@ -51,8 +51,7 @@ const Keys::Key Keys::table[] = {
     {'w', "w", "wireframe",
      [](Keys *keys, TerrainSettings *) {
          keys->is_wireframe = !keys->is_wireframe;
-         keys->scene->getOrCreateStateSet()->setAttributeAndModes(new osg::PolygonMode(
-             osg::PolygonMode::FRONT_AND_BACK, keys->is_wireframe ? osg::PolygonMode::LINE : osg::PolygonMode::FILL));
+         keys->switch_wireframe();
          return std::string("wireframe ") + on_off(keys->is_wireframe);
      }},
     {'c', "c", "the next colouring: height, plain, tile, rung, texture",
@@ -140,7 +139,15 @@ const Keys::Key Keys::table[] = {
      }},
 };
 
-Keys::Keys(TerrainNode *terrain, osg::Group *scene, Hud *hud) : terrain(terrain), scene(scene), hud(hud) {}
+Keys::Keys(TerrainNode *terrain, osg::Group *scene, Hud *hud, bool is_wireframe)
+    : terrain(terrain), scene(scene), hud(hud), is_wireframe(is_wireframe) {
+    switch_wireframe();
+}
+
+void Keys::switch_wireframe() {
+    const osg::PolygonMode::Mode mode = is_wireframe ? osg::PolygonMode::LINE : osg::PolygonMode::FILL;
+    scene->getOrCreateStateSet()->setAttributeAndModes(new osg::PolygonMode(osg::PolygonMode::FRONT_AND_BACK, mode));
+}
 
 void Keys::colour_by(TerrainColour colour) {
     TerrainSettings &settings = terrain->settings();

@@ -17,7 +17,7 @@ struct KeyRequests {
 class Keys : public osgGA::GUIEventHandler {
   public:
     // `scene` is what the wireframe is switched of. All of them outlive this.
-    Keys(TerrainNode *terrain, osg::Group *scene, Hud *hud);
+    Keys(TerrainNode *terrain, osg::Group *scene, Hud *hud, bool is_wireframe);
 
     bool handle(const osgGA::GUIEventAdapter &event, osgGA::GUIActionAdapter &viewer) override;
 
@@ -28,12 +28,13 @@ class Keys : public osgGA::GUIEventHandler {
   private:
     struct Key;
     static const Key table[];
+    void switch_wireframe();
     void colour_by(TerrainColour colour);
     void scale_by(double factor);
     TerrainNode *terrain;
     osg::Group *scene;
     Hud *hud;
-    bool is_wireframe = false;
+    bool is_wireframe;
     TerrainColour colour_before = TerrainColour::TINT;
     friend std::string keys_help();
 };

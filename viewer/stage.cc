@@ -20,7 +20,7 @@ Stage::Stage(osg::ref_ptr<TerrainNode> terrain, const ViewArguments &arguments)
                                        : overview(terrain->world(), FIELD_OF_VIEW_DEG, aspect, arguments.orthogonal);
     placed = home_camera;
     build_scene();
-    keys = new Keys(terrain.get(), scene.get(), &hud);
+    keys = new Keys(terrain.get(), scene.get(), &hud, arguments.wireframe);
 }
 
 void Stage::build_scene() {

@@ -100,6 +100,9 @@ bool take_no_stitch(ViewArguments *all, Text) {
     all->options.settings.stitch = false;
     return true;
 }
+bool take_wireframe(ViewArguments *all, Text) {
+    return all->wireframe = true;
+}
 bool take_glsl(ViewArguments *all, Text text) {
     const int version = parse_name(text, {"120", "330"});
     all->options.glsl = version == 0 ? 120 : 330;
@@ -162,6 +165,7 @@ const Option options[] = {
     {"--colour", "NAME", "tint (by height), plain, tile, rung or texture", take_colour},
     {"--texture", "IMAGE", "a georeferenced image, any that GDAL reads, draped over the terrain", take_texture},
     {"--contours", "[M]", "lines of equal height; M from line to line: --contours=20", take_contours},
+    {"--wireframe", "", "the sides of triangles only", take_wireframe},
     {"--no-morph", "", "change rungs at once instead of moving vertices", take_no_morph},
     {"--no-stitch", "", "leave the cracks between tiles of different rungs open", take_no_stitch},
     {"--glsl", "120|330", "the shaders' language (330 where the driver has it)", take_glsl},

@@ -13,7 +13,7 @@ struct ViewArguments {
     std::string terrain;
     TerrainOptions options;
     int width_px = 1280, height_px = 800;
-    bool orthogonal = false;
+    bool orthogonal = false, wireframe = false;
     bool has_background = false;
     unsigned background = 0; // 0xRRGGBB
     bool has_camera = false;
