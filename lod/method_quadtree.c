@@ -1,13 +1,13 @@
 #include "lod/method_quadtree.h"
 
 #include "lod/mesh.h"
-#include "lod/quadtree.h"
 #include "lod/strip.h"
+#include "stream/quadtree.h"
 
 #include <math.h>
 #include <string.h>
 
-#define SUM_PER_ERROR 16 /* lod/curvature.h says why */
+#define SUM_PER_ERROR 16 /* stream/curvature.h says why */
 
 double method_quadtree_threshold(const struct method_tile *tile, double error_m) {
     return SUM_PER_ERROR * error_m / (tile->cell_span * sqrt(tile->east_m * tile->north_m));

@@ -1,4 +1,4 @@
-/* `quadtree`: the restricted quadtree of Cifuentes, Venere and Clausse (lod/quadtree.h) between given borders. Pure.
+/* `quadtree`: the restricted quadtree of Cifuentes, Venere and Clausse (stream/quadtree.h) between given borders. Pure.
  *
  * The leaves of the tile's own posts are triangulated without regard to the lines; then the vertices of the lines are
  * put in, by fans of the triangles on the border, and what the lines do not keep is taken out, ear by ear. */

@@ -3,9 +3,9 @@
 #ifndef SCREE_REMESH_H
 #define SCREE_REMESH_H
 
-#include "lod/quadtree.h"
 #include "src/extract_mesh.h"
 #include "src/lattice.h"
+#include "stream/quadtree.h"
 
 /* The raster's lattice of the local profile, as one that knows where on Earth it lies when its coordinates are angles:
  * then in degrees and of the geodetic profile. `metres_per_unit` is that of raster_summary. */

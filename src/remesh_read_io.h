@@ -2,9 +2,9 @@
 #ifndef SCREE_REMESH_READ_IO_H
 #define SCREE_REMESH_READ_IO_H
 
-#include "lod/curvature.h"
 #include "src/lattice.h"
 #include "src/raster_io.h"
+#include "stream/curvature.h"
 #include "stream/memory.h"
 #include <scree/error.h>
 

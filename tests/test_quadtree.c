@@ -1,7 +1,7 @@
 /* Curvature of surfaces that are known, its sums, and the meshes of the quadtree: triangulations in which leaves meet,
  * of any rectangle, finer where the observer is, and the same whenever they are asked for. */
 #include "lod/grid_error.h"
-#include "lod/quadtree.h"
+#include "stream/quadtree.h"
 #include "tests/fractal.h"
 
 #include <CUnit/CUnit.h>

@@ -1,9 +1,9 @@
 /* A restricted quadtree over posts, and the mesh that it shows to an observer. Pure.
  *
  * After M. V. Cifuentes, M. J. Venere and A. Clausse, "Interactive remeshing for navigation over landscape models":
- * nodes are merged where the curvature summed over them is small (lod/curvature.h), neighbours differ by one level at
- * the most, each leaf is triangulated by one of a few templates so that leaves conform, and the nearer the observer is,
- * the less curvature a node may have. The hierarchy is made once; a mesh for a position comes out of it in time
+ * nodes are merged where the curvature summed over them is small (stream/curvature.h), neighbours differ by one level
+ * at the most, each leaf is triangulated by one of a few templates so that leaves conform, and the nearer the observer
+ * is, the less curvature a node may have. The hierarchy is made once; a mesh for a position comes out of it in time
  * proportional to the mesh.
  *
  *     struct quadtree tree;
@@ -16,15 +16,19 @@
  *     quadtree_release(&memory, &tree);
  *
  * Any numbers of posts will do: nodes are cut at the border of the rectangle. */
-#ifndef SCREE_LOD_QUADTREE_H
-#define SCREE_LOD_QUADTREE_H
+#ifndef SCREE_STREAM_QUADTREE_H
+#define SCREE_STREAM_QUADTREE_H
 
-#include "lod/curvature.h"
+#include "stream/curvature.h"
 #include "stream/memory.h"
 #include <scree/error.h>
 #include <scree/mesh.h>
 #include <stdbool.h>
 #include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 struct quadtree {
     struct curvature_posts posts; /* the heights stay the caller's, and have to stay */
@@ -66,4 +70,7 @@ int32_t quadtree_leaf_level(const struct quadtree *tree, int32_t x, int32_t y);
 /* Fine on an empty mesh, and twice. */
 void quadtree_mesh_release(struct scree_memory *memory, struct quadtree_mesh *mesh);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

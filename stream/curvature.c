@@ -1,4 +1,4 @@
-#include "lod/curvature.h"
+#include "stream/curvature.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -1,4 +1,4 @@
-#include "lod/quadtree.h"
+#include "stream/quadtree.h"
 
 #include <math.h>
 #include <string.h>

@@ -7,12 +7,16 @@
  * Curvature is a change of slope over two posts, so it has no unit. Over a square whose sides are n posts long, where
  * the second derivatives of height have the norm c, it adds up to 2 c d n^2 (d metres from post to post), and linear
  * interpolation over that square errs by about c (n d)^2 / 8 metres: the sum times d / 16. */
-#ifndef SCREE_LOD_CURVATURE_H
-#define SCREE_LOD_CURVATURE_H
+#ifndef SCREE_STREAM_CURVATURE_H
+#define SCREE_STREAM_CURVATURE_H
 
 #include "stream/memory.h"
 #include <scree/error.h>
 #include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 #define CURVATURE_MAX_POSTS 32769 /* a side */
 #define CURVATURE_LEVELS    16    /* a node of the last one has 2^15 cells a side */
@@ -58,4 +62,7 @@ enum scree_status curvature_pyramid_make(struct scree_memory *memory, const stru
 /* Fine on an empty pyramid, and twice. */
 void curvature_pyramid_release(struct scree_memory *memory, struct curvature_pyramid *pyramid);
 
+#ifdef __cplusplus
+}
+#endif
 #endif
