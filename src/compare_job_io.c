@@ -306,8 +306,9 @@ static enum scree_status assemble(struct compare_job *job, const uint32_t touche
                               options->build.raster.inputs[0], zoom);
     }
     if (zoom_count == 0)
-        return scree_fail(error, SCREE_E_ARGUMENT, "%s: no zoom has a tile that is full of data; try --profile local",
-                          options->build.raster.inputs[0]);
+        return scree_fail(error, SCREE_E_ARGUMENT, "%s: no zoom has a tile that is full of data%s",
+                          options->build.raster.inputs[0],
+                          options->build.raster.profile == PROFILE_LOCAL ? "" : "; try --profile local");
     job->entries = scree_allocate(&job->memory, (size_t)zoom_count * count, sizeof *job->entries, "the report", error);
     if (job->entries == NULL) return SCREE_E_MEMORY;
     struct compare_report *report = &job->report;
