@@ -1,5 +1,7 @@
 #include "viewer/view_arguments.h"
 
+#include "viewer/terrain_words.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,12 +20,6 @@ bool parse_whole(const std::string &text, double most, unsigned *whole) {
     if (!parse_number(text, 1, most, &number) || number != floor(number)) return false;
     *whole = (unsigned)number;
     return true;
-}
-
-// Which of the names; -1: none.
-int parse_name(const std::string &text, std::initializer_list<const char *> names) {
-    const auto found = std::find(names.begin(), names.end(), text);
-    return found == names.end() ? -1 : (int)(found - names.begin());
 }
 
 bool parse_size(const std::string &text, int *width_px, int *height_px) {
@@ -48,7 +44,8 @@ bool parse_path(const std::string &text, std::string *path) {
     return !text.empty();
 }
 
-// What a value is called in the help; "": the option stands alone; "[...]": it may, and takes its value behind '='.
+// `value`: what it is called in the help; "": the option stands alone; "[...]": it may, and takes its value behind '='.
+// `take` null: one of the terrain's own words (terrain_words.h), on when it stands alone.
 struct Option {
     const char *name, *value, *help;
     bool (*take)(ViewArguments *, const std::string &);
@@ -56,41 +53,8 @@ struct Option {
 
 using Text = const std::string &;
 
-bool take_tolerance(ViewArguments *all, Text text) {
-    return parse_number(text, 1e-3, 1e6, &all->options.settings.tolerance_px);
-}
-bool take_mode(ViewArguments *all, Text text) {
-    const int mode = parse_name(text, {"svo", "error"});
-    all->options.settings.measure = mode == 1 ? SCREE_BY_MAX_ERROR : SCREE_BY_SVO;
-    return mode >= 0;
-}
 bool take_svo(ViewArguments *all, Text text) {
     return parse_number(text, 1e-9, 1e9, &all->options.settings.manual_svo_m);
-}
-bool take_triangles(ViewArguments *all, Text text) {
-    unsigned count;
-    if (!parse_whole(text, 4e9, &count)) return false;
-    all->options.settings.triangle_budget = count;
-    return true;
-}
-bool take_memory(ViewArguments *all, Text text) {
-    unsigned megabytes;
-    if (!parse_whole(text, 1 << 24, &megabytes)) return false;
-    all->options.settings.memory_bytes = (uint64_t)megabytes << 20;
-    return true;
-}
-bool take_colour(ViewArguments *all, Text text) {
-    const int colour = parse_name(text, {"tint", "plain", "tile", "rung", "texture"});
-    if (colour >= 0) all->options.settings.colour = (TerrainColour)colour;
-    return colour >= 0;
-}
-bool take_texture(ViewArguments *all, Text text) {
-    all->options.settings.colour = TerrainColour::TEXTURE;
-    return parse_path(text, &all->options.texture);
-}
-bool take_contours(ViewArguments *all, Text text) {
-    all->options.settings.contours = true;
-    return text.empty() || parse_number(text, 1e-6, 1e6, &all->options.settings.contour_m);
 }
 bool take_no_morph(ViewArguments *all, Text) {
     all->options.settings.morph = false;
@@ -102,11 +66,6 @@ bool take_no_stitch(ViewArguments *all, Text) {
 }
 bool take_wireframe(ViewArguments *all, Text) {
     return all->wireframe = true;
-}
-bool take_glsl(ViewArguments *all, Text text) {
-    const int version = parse_name(text, {"120", "330"});
-    all->options.glsl = version == 0 ? 120 : 330;
-    return version >= 0;
 }
 bool take_size(ViewArguments *all, Text text) {
     return parse_size(text, &all->width_px, &all->height_px);
@@ -157,18 +116,18 @@ bool take_help(ViewArguments *all, Text) {
 }
 
 const Option options[] = {
-    {"--tolerance", "PX", "how long the smallest visible object may be on the screen, in pixels (1)", take_tolerance},
-    {"--mode", "svo|error", "what the tolerance is of: the smallest visible object (svo) or the max error", take_mode},
+    {"--tolerance", "PX", "how long the smallest visible object may be on the screen, in pixels (1)", nullptr},
+    {"--mode", "svo|error", "what the tolerance is of: the smallest visible object (svo) or the max error", nullptr},
     {"--svo", "M", "every tile at the coarsest rung with at most this SVO, in metres, whatever the view", take_svo},
-    {"--triangles", "N", "draw no more: the tolerance is raised instead", take_triangles},
-    {"--memory", "MB", "of all tiles that are held (1024)", take_memory},
-    {"--colour", "NAME", "tint (by height), plain, tile, rung or texture", take_colour},
-    {"--texture", "IMAGE", "a georeferenced image, any that GDAL reads, draped over the terrain", take_texture},
-    {"--contours", "[M]", "lines of equal height; M from line to line: --contours=20", take_contours},
+    {"--triangles", "N", "draw no more, 1000 at least: the tolerance is raised instead", nullptr},
+    {"--memory", "MB", "of all tiles that are held, 16 at least (1024)", nullptr},
+    {"--colour", "NAME", "tint (by height), plain, tile, rung or texture", nullptr},
+    {"--texture", "IMAGE", "a georeferenced image, any that GDAL reads, draped over the terrain", nullptr},
+    {"--contours", "[M]", "lines of equal height; M from line to line: --contours=20", nullptr},
     {"--wireframe", "", "the sides of triangles only", take_wireframe},
     {"--no-morph", "", "change rungs at once instead of moving vertices", take_no_morph},
     {"--no-stitch", "", "leave the cracks between tiles of different rungs open", take_no_stitch},
-    {"--glsl", "120|330", "the shaders' language (330 where the driver has it)", take_glsl},
+    {"--glsl", "120|330", "the shaders' language (120)", nullptr},
     {"--size", "WxH", "of the window or the picture, in pixels (1280x800)", take_size},
     {"--background", "RRGGBB", "the sky's colour, in hexadecimal", take_background},
     {"--camera", "PLACE", "lon,lat,height,heading,pitch in degrees and metres (--camera=-84,36,900,0,-20)",
@@ -179,8 +138,7 @@ const Option options[] = {
     {"--record", "FILE", "write the camera's path while you fly", take_record},
     {"--play", "SECONDS", "the scale of all tiles from the coarsest to the finest and back", take_play},
     {"--benchmark", "",
-     "fly off screen, as fast as it goes, and print what it took; without --fly or --play over "
-     "the terrain, near and far",
+     "fly off screen as fast as it goes, around the terrain when nothing else is asked for, and tell what it took",
      take_benchmark},
     {"--frames", "N", "spread the flight evenly over N frames instead of following the clock", take_frames},
     {"--trace", "FILE.csv", "write a row for every frame", take_trace},
@@ -219,7 +177,11 @@ bool take_option(const std::vector<std::string> &words, size_t *at, ViewArgument
         *error = name + " takes no value";
         return false;
     }
-    if (option->take(arguments, value)) return true;
+    std::string reason; // the one below says it in this program's words
+    const std::string word_value = value.empty() && equals == std::string::npos && !wants_value ? "on" : value;
+    if (option->take != nullptr ? option->take(arguments, value)
+                                : terrain_word_set(name.substr(2), word_value, &arguments->options, &reason))
+        return true;
     *error = name + " wants " + option->value + ", not '" + value + "'";
     return false;
 }
