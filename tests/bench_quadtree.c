@@ -31,6 +31,7 @@ static const struct {
     {"Big Tujunga Canyon 30 m", "bigtujunga_srtm30m_utm11.tif"},
     {"Monterey Canyon 3\" x 6\"", "monterey_topobathy_nad83.tif"},
     {"Mount St Helens 10 m", "sthelens_2000_10m_utm10.tif"},
+    {"Pyrenees to the plain 3\"", "large/catalonia_srtm3_1201x2401.tif"},
 };
 
 static const double eyes_m[] = {2, 1000}; /* above the ground */
