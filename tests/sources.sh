@@ -33,7 +33,7 @@ for file in $(find include stream lod src viewer -type f \( -name '*.[ch]' -o -n
         esac
     done
     case $file in
-    *_io.[ch] | src/main.c | src/cmd_*.c) ;;
+    *_io.[ch] | *_io.cc | src/main.c | src/cmd_*.c) ;;
     *)
         foreign=$(grep -nE '^[[:space:]]*#[[:space:]]*include[[:space:]]*<(gdal|ogr|cpl_|proj)' "$file")
         [ -z "$foreign" ] || fail "$file: GDAL and PROJ belong into a file that ends in _io.c: $foreign"

@@ -23,8 +23,16 @@ Loaders::~Loaders() {
 void Loaders::work() {
     std::unique_lock<std::mutex> guard(lock);
     while (true) {
-        has_work.wait(guard, [this] { return is_ending || !queue.empty(); });
+        has_work.wait(guard, [this] { return is_ending || !queue.empty() || !buried.empty(); });
         if (is_ending) return;
+        std::vector<std::shared_ptr<TileMesh>> freed = std::move(buried);
+        buried.clear();
+        if (!freed.empty()) {
+            guard.unlock();
+            freed.clear();
+            guard.lock();
+            continue;
+        }
         LoadRequest request = std::move(queue.front());
         queue.pop_front();
         if (!begun.emplace(request.tile, request.bytes).second) continue;
@@ -46,6 +54,14 @@ void Loaders::want(std::deque<LoadRequest> requests) {
         queue = std::move(requests);
     }
     has_work.notify_all();
+}
+
+void Loaders::bury(std::vector<std::shared_ptr<TileMesh>> meshes) {
+    {
+        std::lock_guard<std::mutex> guard(lock);
+        for (std::shared_ptr<TileMesh> &mesh : meshes) buried.push_back(std::move(mesh));
+    }
+    has_work.notify_one();
 }
 
 std::vector<LoadedTile> Loaders::take() {

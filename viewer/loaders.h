@@ -39,6 +39,9 @@ class Loaders {
     // What has been finished since.
     std::vector<LoadedTile> take();
 
+    // Frees meshes that nobody else holds, which takes longer than a frame has time for.
+    void bury(std::vector<std::shared_ptr<TileMesh>> meshes);
+
     uint32_t loading() const;       // begun, and not taken yet
     uint64_t loading_bytes() const; // of these
     bool is_idle() const;           // nothing asked for, nothing under way, nothing to take
@@ -52,6 +55,7 @@ class Loaders {
     std::deque<LoadRequest> queue;
     std::unordered_map<uint32_t, uint64_t> begun; // tiles and bytes
     std::vector<LoadedTile> finished;
+    std::vector<std::shared_ptr<TileMesh>> buried;
     bool is_ending = false;
     std::vector<std::thread> threads;
 };

@@ -132,6 +132,11 @@ void MovingCut::step(const scree_select_drawn *wanted, uint32_t count, double mo
     for (uint32_t i = 0; i < shown.size(); i++) place[shown[i].tile] = i;
 }
 
+void MovingCut::hold(uint32_t at, double level) {
+    shown[at].level = level;
+    still = false;
+}
+
 void MovingCut::jump(const scree_select_drawn *wanted, uint32_t count) {
     for (const CutTile &old : shown) place[old.tile] = NOWHERE;
     shown.clear();

@@ -26,6 +26,9 @@ class MovingCut {
     // At once.
     void jump(const scree_select_drawn *wanted, uint32_t count);
 
+    // The tile at that place among them stays at another level for now.
+    void hold(uint32_t at, double level);
+
     // Tiles that have to be loaded to their finest rung before they can change places with others.
     const std::vector<uint32_t> &awaited() const { return wanted_whole; }
 

@@ -39,7 +39,7 @@ void main() {
     vec3 place = (scree_high - scree_eye_high) + (scree_low - scree_eye_low) + (1.0 - weight) * scree_delta;
     gl_Position = scree_projection * (scree_view * vec4(place, 1.0));
     height = mix(scree_heights.y, scree_heights.x, weight);
-    map = scree_map;
+    map = 2.0 * scree_map - 0.5; // MAP_SPAN
     vec3 normal = normalize(mix(scree_origin_normal.xyz, scree_normal.xyz, weight));
     vec3 up = vec3(0.0, 0.0, 1.0), east = vec3(1.0, 0.0, 0.0);
     if (scree_is_globe) {

@@ -11,6 +11,8 @@ constexpr uint32_t RUNGS_AHEAD = 4;                   // an octave: what has to 
 constexpr uint64_t BYTES_A_TRIANGLE = 256;            // of memory: 225 to 253 were measured
 constexpr uint64_t BYTES_A_BASE = 2u << 20;           // of a tile of which nothing is known yet
 constexpr size_t BYTES_A_FRAME = 1u << 20;            // to the graphics card, for tiles that have come
+constexpr size_t CHANGES_A_FRAME = 12;                // of rungs, while levels move
+constexpr double SLIGHT = 1e-6;                       // of a rung: nobody sees it
 constexpr std::ptrdiff_t DATA_TILES = 16;             // so many are read to learn the heights
 constexpr double LOWEST_M = -12000, HIGHEST_M = 9000; // until the roots have told
 
@@ -93,8 +95,7 @@ std::pair<double, double> TerrainSet::data_heights_m() {
         LoadedTile tile = load_tile({i, 1, 0, manifest.path_of(tiles[i].id)}, world);
         if (tile.mesh == nullptr) continue;
         for (const TileVertex &vertex : tile.mesh->vertices) {
-            bool is_inside = vertex.map[0] > 0 && vertex.map[0] < 65535 && vertex.map[1] > 0 && vertex.map[1] < 65535;
-            if (!is_inside) continue;
+            if (!TileMesh::is_on_data(vertex)) continue;
             lowest_m = std::min(lowest_m, (double)vertex.height_m);
             highest_m = std::max(highest_m, (double)vertex.height_m);
         }
@@ -121,12 +122,24 @@ void TerrainSet::take(LoadedTile loaded) {
     }
     if (loaded.mesh == nullptr || (held[tile].mesh != nullptr && loaded.mesh->rungs_ready() <= tiles[tile].rungs_ready))
         return;
-    if (held[tile].mesh == nullptr) holding.push_back(tile);
+    if (held[tile].mesh == nullptr)
+        holding.push_back(tile);
+    else
+        retired.push_back(held[tile].mesh);
     held[tile] = {std::move(loaded.mesh), frame_number, 0};
     held[tile].bytes = held[tile].mesh->bytes();
     tiles[tile].header = &held[tile].mesh->header();
     tiles[tile].rungs_ready = held[tile].mesh->rungs_ready();
     keep_heights(tile, *held[tile].mesh);
+}
+
+void TerrainSet::bury_retired() {
+    auto still_used = std::partition(retired.begin(), retired.end(),
+                                     [](const std::shared_ptr<TileMesh> &mesh) { return mesh.use_count() > 1; });
+    std::vector<std::shared_ptr<TileMesh>> unused(std::make_move_iterator(still_used),
+                                                  std::make_move_iterator(retired.end()));
+    retired.erase(still_used, retired.end());
+    if (loaders != nullptr && !unused.empty()) loaders->bury(std::move(unused));
 }
 
 // What the frame that takes it sends to the graphics card: as much as is drawn of the tile now.
@@ -169,6 +182,24 @@ void TerrainSet::choose(const scree_view &view, const TerrainSettings &settings)
     told.tolerance_px = selection.tolerance_px;
     if (!settings.morph) // whole rungs
         for (uint32_t i = 0; i < selection.drawn_count; i++) selected[i].level = selected[i].rung;
+}
+
+// So many tiles may change their rung in a frame, those first that are farthest behind; the others wait at the end of
+// the rung that they show.
+void TerrainSet::spread() {
+    std::vector<std::pair<double, uint32_t>> due;
+    const std::vector<CutTile> &tiles_now = cut->tiles();
+    for (uint32_t i = 0; i < tiles_now.size(); i++) {
+        const Held &tile = held[tiles_now[i].tile];
+        double ahead = tiles_now[i].level - tile.mesh->rung();
+        bool was_drawn = tile.last_frame + 1 == frame_number;
+        if (was_drawn && (ahead > 0 || ahead <= -1)) due.emplace_back(-std::fabs(ahead), i);
+    }
+    std::sort(due.begin(), due.end());
+    for (size_t i = CHANGES_A_FRAME; i < due.size(); i++) {
+        uint32_t rung = held[tiles_now[due[i].second].tile].mesh->rung();
+        cut->hold(due[i].second, tiles_now[due[i].second].level > rung ? rung : rung - 1 + SLIGHT);
+    }
 }
 
 void TerrainSet::seek() {
@@ -257,6 +288,7 @@ void TerrainSet::tell_drawn() {
 void TerrainSet::frame(const scree_view &view, const TerrainSettings &settings, double seconds) {
     frame_number++;
     Stopwatch watch;
+    bury_retired();
     take_arrivals();
     if (!settings.is_frozen) choose(view, settings);
     if (settings.is_frozen && !is_first)
@@ -265,6 +297,7 @@ void TerrainSet::frame(const scree_view &view, const TerrainSettings &settings, 
         cut->jump(selected.data(), selection.drawn_count);
     else
         cut->step(selected.data(), selection.drawn_count, settings.rungs_per_second * seconds);
+    if (!is_first && settings.morph && settings.rungs_per_second > 0) spread();
     is_first = false;
     told.select_ms = watch.lap_ms();
     seek();
@@ -308,6 +341,7 @@ void TerrainSet::request(const TerrainSettings &settings) {
 }
 
 void TerrainSet::drop(uint32_t tile) {
+    retired.push_back(held[tile].mesh);
     held[tile] = {};
     tiles[tile].header = nullptr;
     tiles[tile].rungs_ready = 0;

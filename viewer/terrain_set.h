@@ -45,10 +45,12 @@ class TerrainSet {
         size_t bytes = 0;
     };
     void take(LoadedTile loaded);
+    void bury_retired();
     size_t bytes_to_send(const LoadedTile &loaded) const;
     void take_arrivals();
     void keep_heights(uint32_t tile, const TileMesh &mesh);
     void choose(const scree_view &view, const TerrainSettings &settings);
+    void spread();
     void seek();
     void find_neighbours();
     void stitch_changed(bool stitched);
@@ -79,6 +81,7 @@ class TerrainSet {
     bool was_stitched = true, is_first = true;
     uint64_t frame_number = 0;
     TerrainFigures told;
+    std::vector<std::shared_ptr<TileMesh>> retired; // replaced or dropped, but perhaps still drawn
     std::deque<LoadedTile> arrived;
     std::unique_ptr<Loaders> loaders; // the last member: its threads end first
 };

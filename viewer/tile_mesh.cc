@@ -34,9 +34,10 @@ void put_normal(const float sum[3], int16_t normal[3]) {
     }
 }
 
-uint16_t share(double value, double low, double high) {
+// MAP_SPAN times as wide as the rectangle, which lies in its middle.
+uint16_t map_of(double value, double low, double high) {
     double share = high > low ? (value - low) / (high - low) : 0;
-    return (uint16_t)std::lround(65535 * std::clamp(share, 0.0, 1.0));
+    return (uint16_t)std::lround(65535 * std::clamp(0.5 + (share - 0.5) / MAP_SPAN, 0.0, 1.0));
 }
 
 bool is_border(const scree_stream_header &header, const scree_vertex &vertex) {
@@ -104,8 +105,8 @@ void TileMesh::place_vertices() {
         vertex.height_m = vertex.origin_height_m = (float)height_m;
         lowest_m = std::min(lowest_m, vertex.height_m);
         highest_m = std::max(highest_m, vertex.height_m);
-        vertex.map[0] = share(tile.west + from.x * tile.spacing_x, world.bounds[0], world.bounds[2]);
-        vertex.map[1] = share(tile.south + from.y * tile.spacing_y, world.bounds[1], world.bounds[3]);
+        vertex.map[0] = map_of(tile.west + from.x * tile.spacing_x, world.bounds[0], world.bounds[2]);
+        vertex.map[1] = map_of(tile.south + from.y * tile.spacing_y, world.bounds[1], world.bounds[3]);
         vertex.increment = is_border(tile, from) ? 0 : (int16_t)shown.increments[i];
     }
 }
@@ -165,6 +166,11 @@ void TileMesh::positions(std::vector<float> *place) const {
             for (int k = 0; k < 3; k++) along += (place_of(vertices[i], k) - own.origin[k]) * own.axes[axis][k];
             (*place)[3 * (size_t)i + (size_t)axis] = (float)along;
         }
+}
+
+bool TileMesh::is_on_data(const TileVertex &vertex) {
+    auto is_within = [](uint16_t map) { return std::fabs(map / 65535.0 - 0.5) * MAP_SPAN < 0.5 - 1e-4; };
+    return is_within(vertex.map[0]) && is_within(vertex.map[1]);
 }
 
 void TileMesh::base_heights(const scree_terrain &terrain, float *lowest, float *highest) const {

@@ -13,11 +13,13 @@
 #include <scree/stitch.h>
 #include <vector>
 
+constexpr double MAP_SPAN = 2; // beyond the data there are places, too
+
 struct TileVertex {
     float high[3], low[3]; // their sum is the place in the world
     float delta[3];        // from there to where it morphs from
     float height_m, origin_height_m;
-    uint16_t map[2]; // in the rectangle of the data, 0 .. 65535 from the south-west
+    uint16_t map[2]; // 0 .. 65535 from the south-west, over MAP_SPAN times the rectangle of the data
     int16_t normal[3];
     int16_t increment; // scree_morph_weight; 0 on the border, which does not morph
     int16_t origin_normal[3];
@@ -81,8 +83,9 @@ class TileMesh {
     PageVersions vertex_pages{64}, index_pages{1024}; // of 4 KiB
     uint64_t version = 1, seam_version = 1;           // of the latest change
 
-    scree_frame frame() const;                       // of the tile, in the world's metres
-    void positions(std::vector<float> *place) const; // of the shown vertices, in that frame
+    scree_frame frame() const;                        // of the tile, in the world's metres
+    void positions(std::vector<float> *place) const;  // of the shown vertices, in that frame
+    static bool is_on_data(const TileVertex &vertex); // within their rectangle
     // Bounds of the tile and all below it, from its base mesh (scree_select_heights).
     void base_heights(const scree_terrain &terrain, float *lowest, float *highest) const;
     double box[2][3]; // of all vertices, in that frame
