@@ -7,6 +7,8 @@
 SUITE(vocabulary)
 SUITE(fractal)
 SUITE(greedy)
+SUITE(method_codes)
+SUITE(methods)
 SUITE(method_qem)
 SUITE(method_greedy)
 SUITE(grid_error)
