@@ -11,7 +11,7 @@ constexpr uint32_t RUNGS_AHEAD = 4;                   // an octave: what has to 
 constexpr uint64_t BYTES_A_TRIANGLE = 256;            // of memory: 225 to 253 were measured
 constexpr uint64_t BYTES_A_BASE = 2u << 20;           // of a tile of which nothing is known yet
 constexpr size_t BYTES_A_FRAME = 1u << 20;            // to the graphics card, for tiles that have come
-constexpr size_t CHANGES_A_FRAME = 12;                // of rungs, while levels move
+constexpr size_t CHANGES_A_FRAME = 8;                 // of rungs, while levels move
 constexpr double SLIGHT = 1e-6;                       // of a rung: nobody sees it
 constexpr std::ptrdiff_t DATA_TILES = 16;             // so many are read to learn the heights
 constexpr double LOWEST_M = -12000, HIGHEST_M = 9000; // until the roots have told

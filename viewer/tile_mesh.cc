@@ -217,12 +217,12 @@ const scree_stitch_tile &TileMesh::stitch_tile() {
     return own;
 }
 
-// How far a vertex is along a common line before one of another tile.
-double TileMesh::steps_ahead(uint32_t vertex, const TileMesh &other, uint32_t its, scree_side side) const {
+// How far a common line's vertices of this tile lie behind those of another, in steps along it.
+int64_t TileMesh::steps_behind(const TileMesh &other, scree_side side) const {
     const scree_stream_header &here = header(), &there = other.header();
-    const scree_vertex &at = shown.vertices[vertex], &its_at = other.shown.vertices[its];
-    if (side == SCREE_EAST || side == SCREE_WEST) return (here.south - there.south) / here.spacing_y + at.y - its_at.y;
-    return (here.west - there.west) / here.spacing_x + at.x - its_at.x;
+    bool is_north_south = side == SCREE_EAST || side == SCREE_WEST;
+    return std::llround(is_north_south ? (here.south - there.south) / here.spacing_y
+                                       : (here.west - there.west) / here.spacing_x);
 }
 
 // Both sides list their vertices along the common line from its low end: a walk along both finds those in common.
@@ -232,15 +232,19 @@ void TileMesh::share_normals(const std::vector<Neighbour> &neighbours) {
     for (const Neighbour &beside : neighbours) {
         const scree_border &border = tile.borders[beside.side];
         const scree_border &other = beside.mesh->stitch_tile().borders[(beside.side + 2) % SCREE_SIDES];
+        int64_t behind = steps_behind(*beside.mesh, beside.side);
+        bool is_north_south = beside.side == SCREE_EAST || beside.side == SCREE_WEST;
+        auto along = [is_north_south](const scree_vertex &at) { return is_north_south ? at.y : at.x; };
         for (uint32_t i = 0, k = 0; i < border.vertex_count && k < other.vertex_count;) {
-            double ahead_steps = steps_ahead(border.vertices[i], *beside.mesh, other.vertices[k], beside.side);
-            if (std::fabs(ahead_steps) < 0.5) {
+            int64_t mine = behind + along(shown.vertices[border.vertices[i]]);
+            int64_t its = along(beside.mesh->shown.vertices[other.vertices[k]]);
+            if (mine == its) {
                 const Sum &sum = beside.mesh->border_sums[beside.mesh->border_places[other.vertices[k]]];
                 Sum &both = now[border_places[border.vertices[i]]];
                 for (int j = 0; j < 3; j++) both.normal[j] += sum.normal[j];
             }
-            if (ahead_steps < 0.5) i++;
-            if (ahead_steps > -0.5) k++;
+            i += mine <= its;
+            k += its <= mine;
         }
     }
     for (const scree_border &border : tile.borders)

@@ -97,7 +97,7 @@ class TileMesh {
     void find_normals();
     void copy_changed_slots();
     const scree_stitch_tile &stitch_tile();
-    double steps_ahead(uint32_t vertex, const TileMesh &other, uint32_t its, scree_side side) const;
+    int64_t steps_behind(const TileMesh &other, scree_side side) const;
 
     Player player;
     MeshWorld world;
