@@ -36,8 +36,6 @@ osg::ref_ptr<osg::GraphicsContext> open_window(int width_px, int height_px, bool
     }
     osg::setNotifyLevel(severity);
     if (!context.valid())
-        *error = traits->hostName.empty() && traits->displayNum < 0
-                     ? "there is no display"
-                     : "no picture can be drawn here: DISPLAY has to name a display with OpenGL (xvfb-run makes one)";
+        *error = "no picture can be drawn here: DISPLAY has to name a display with OpenGL (xvfb-run makes one)";
     return context;
 }
