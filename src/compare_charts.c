@@ -75,6 +75,7 @@ enum scree_status compare_add_hausdorff_chart(const struct compare_report *repor
     layout.sheet.title = "Symmetric Hausdorff distances, sorted";
     layout.sheet.x_label = "tiles";
     layout.sheet.y_label = "distance, m";
+    layout.sheet.y_is_logarithmic = true;
     for (uint32_t i = 0; i < report->entry_count; i++) {
         const struct compare_entry *entry = &report->entries[i];
         uint32_t tiles = compare_tile_count(report, entry);
