@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 
 namespace {
 
@@ -204,54 +205,52 @@ void TerrainSet::spread() {
 
 void TerrainSet::seek() {
     std::vector<Shown> before = std::move(drawn);
+    std::vector<size_t> old_places; // of each drawn, among those of the frame before; SIZE_MAX: new
     drawn.clear();
     changed.clear();
     told.splits = 0;
     size_t old = 0; // both lists are in the order of the cut
-    bool is_same_cut = before.size() == cut->tiles().size();
     for (const CutTile &one : cut->tiles()) {
         Held &tile = held[one.tile];
         while (old < before.size() && scree_tile_compare(&tiles[before[old].tile].id, &tiles[one.tile].id) < 0) old++;
-        bool was_drawn = old < before.size() && before[old].tile == one.tile;
-        bool is_new = !was_drawn || before[old].mesh != tile.mesh;
+        bool was_drawn = old < before.size() && before[old].mesh == tile.mesh;
         bool is_other = tile.mesh->seek(one.level, &told.splits);
-        is_same_cut = is_same_cut && was_drawn;
         drawn.push_back({one.tile, tile.mesh});
-        changed.push_back(is_new || is_other);
+        changed.push_back(!was_drawn || is_other);
+        old_places.push_back(was_drawn ? old : SIZE_MAX);
         for (uint32_t at = one.tile; at != UINT32_MAX; at = parents[at]) held[at].last_frame = frame_number;
     }
-    bool is_same = is_same_cut;
-    for (size_t i = 0; i < drawn.size() && is_same; i++) is_same = drawn[i].mesh == before[i].mesh;
-    if (!is_same) find_neighbours();
+    bool is_same = drawn.size() == before.size();
+    for (size_t i = 0; i < drawn.size() && is_same; i++) is_same = old_places[i] == i;
+    is_due = changed;
+    if (!is_same) find_neighbours(old_places);
 }
 
-void TerrainSet::find_neighbours() {
+// A tile whose neighbours are others has to be stitched anew.
+void TerrainSet::find_neighbours(const std::vector<size_t> &old_places) {
     std::vector<scree_tile_id> ids;
     for (const Shown &one : drawn) ids.push_back(tiles[one.tile].id);
     uint32_t count = (uint32_t)ids.size();
     std::vector<uint32_t> beside(count);
     std::vector<std::vector<TileMesh::Neighbour>> found(count);
-    for (uint32_t i = 0; i < count; i++)
+    for (uint32_t i = 0; i < count; i++) {
         for (int side = 0; side < SCREE_SIDES; side++) {
             uint32_t at_side = scree_cut_neighbours(ids.data(), count, manifest.terrain.profile, &ids[i],
                                                     (scree_side)side, beside.data(), count);
             for (uint32_t k = 0; k < at_side; k++) found[i].push_back({drawn[beside[k]].mesh.get(), (scree_side)side});
         }
-    // a tile whose neighbours are others has to be stitched anew
-    for (uint32_t i = 0; i < count; i++) changed[i] = 1;
+        if (old_places[i] == SIZE_MAX || neighbours[old_places[i]] != found[i]) is_due[i] = 1;
+    }
     neighbours = std::move(found);
 }
 
 void TerrainSet::stitch_changed(bool stitched) {
-    std::unordered_map<const TileMesh *, size_t> places;
-    std::vector<char> is_due(drawn.size(), stitched != was_stitched);
+    std::unordered_set<const TileMesh *> others;
     for (size_t i = 0; i < drawn.size(); i++)
-        if (changed[i]) places.emplace(drawn[i].mesh.get(), i);
-    for (size_t i = 0; i < drawn.size(); i++) {
-        if (changed[i]) is_due[i] = 1;
+        if (changed[i]) others.insert(drawn[i].mesh.get());
+    for (size_t i = 0; i < drawn.size(); i++)
         for (const TileMesh::Neighbour &beside : neighbours[i])
-            if (places.count(beside.mesh) != 0) is_due[i] = 1;
-    }
+            if (stitched != was_stitched || others.count(beside.mesh) != 0) is_due[i] = 1;
     was_stitched = stitched;
     for (size_t i = 0; i < drawn.size(); i++)
         if (is_due[i]) drawn[i].mesh->share_normals(neighbours[i]);

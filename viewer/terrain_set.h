@@ -52,7 +52,7 @@ class TerrainSet {
     void choose(const scree_view &view, const TerrainSettings &settings);
     void spread();
     void seek();
-    void find_neighbours();
+    void find_neighbours(const std::vector<size_t> &old_places);
     void stitch_changed(bool stitched);
     uint64_t bytes_held() const;
     void tell_drawn();
@@ -77,7 +77,7 @@ class TerrainSet {
     std::vector<double> workspace;
     std::vector<Shown> drawn;
     std::vector<std::vector<TileMesh::Neighbour>> neighbours; // of each drawn
-    std::vector<char> changed;                                // for each drawn: its triangles are others
+    std::vector<char> changed, is_due; // for each drawn: its triangles are others; it has to be stitched
     bool was_stitched = true, is_first = true;
     uint64_t frame_number = 0;
     TerrainFigures told;

@@ -68,6 +68,7 @@ class TileMesh {
     struct Neighbour {
         TileMesh *mesh;
         scree_side side; // of this tile
+        bool operator==(const Neighbour &other) const { return mesh == other.mesh && side == other.side; }
     };
 
     // Gives the vertices of the border the normals that both sides have at their scales.
