@@ -124,6 +124,7 @@ double contour_for(double relief_m) {
 
 osg::ref_ptr<osg::StateSet> terrain_state(int glsl, const TerrainWorld &world, osg::Image *texture) {
     osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
+    state->setDataVariance(osg::Object::DYNAMIC); // it follows the settings
     state->setAttributeAndModes(program_new(glsl));
     state->addUniform(new osg::Uniform("scree_is_globe", world.is_geodetic()));
     osg::Vec3 sun(-0.55f, 0.55f, 0.63f); // from the north-west, as on maps
