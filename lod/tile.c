@@ -209,14 +209,18 @@ static enum scree_status join_lines(struct tile *tile, const struct coarse_tile 
     return tile_lines_join(lines, child_span, tile->geometry.cell_span, tile->geometry.side_drop_m, tile->lines, error);
 }
 
+int32_t tile_child_span(const struct coarse_tile *const children[4]) {
+    if (children[2] != NULL) return children[0]->rows;
+    if (children[1] != NULL) return children[0]->columns;
+    return children[0]->columns > children[0]->rows ? children[0]->columns : children[0]->rows;
+}
+
 enum scree_status tile_from_children(struct scree_memory *memory, const struct tile_geometry *geometry,
                                      const struct coarse_tile *const children[4], struct tile *tile,
                                      struct scree_error *error) {
     enum scree_status status;
     const struct scree_mesh *meshes[4];
-    int32_t child_span = children[0]->columns > children[0]->rows ? children[0]->columns : children[0]->rows;
-    if (children[1] != NULL) child_span = children[0]->columns;
-    if (children[2] != NULL) child_span = children[0]->rows;
+    int32_t child_span = tile_child_span(children);
     if ((status = start_tile(memory, geometry, tile, error)) != SCREE_OK) return status;
     for (int i = 0; i < 4; i++) meshes[i] = children[i] != NULL ? &children[i]->mesh : NULL;
     if ((status = mesh_merge(memory, meshes, child_span, &tile->mesh, error)) != SCREE_OK) goto failed;
@@ -307,6 +311,13 @@ enum scree_status tile_lock(struct tile *tile, int64_t locked_step, struct scree
 /* A code is off by half a step at the most. */
 static float rounding_steps(struct code_frame codes) {
     return (float)(0.5 * (double)codes.span / POSITION_TOP);
+}
+
+struct samples tile_samples_written(const struct tile *tile, struct code_frame codes, double tolerance_m) {
+    struct samples samples = tile->samples;
+    samples.rounding_steps = rounding_steps(codes);
+    samples.rounding_limit_m = ROUNDING_SHARE * (float)tolerance_m;
+    return samples;
 }
 
 void tile_set_codes(struct tile *tile, struct code_frame codes) {
@@ -410,6 +421,8 @@ void coarse_tile_free(struct scree_memory *memory, struct coarse_tile *coarse) {
     if (coarse == NULL) return;
     scree_release(memory, coarse->mesh.corners);
     scree_release(memory, coarse->mesh.vertices);
+    scree_release(memory, coarse->fitted.mesh.corners);
+    scree_release(memory, coarse->fitted.mesh.vertices);
     slope_grid_release(memory, &coarse->slopes);
     scree_release(memory, coarse->extremes);
     scree_release(memory, coarse);

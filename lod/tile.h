@@ -38,6 +38,13 @@ struct tile {
     struct coarse_tile *rest; /* what will be handed up, but for the mesh and the lines */
 };
 
+/* A mesh for a static tile alone, see lod/tile_fit.h. */
+struct fitted_tile {
+    struct scree_mesh mesh; /* empty: nothing has been fitted */
+    double max_error_m;     /* against the samples of the tiles that it was fitted to */
+    double mmqe_m2;
+};
+
 /* What a tile at its coarsest rung leaves to its parent. */
 struct coarse_tile {
     int32_t columns, rows; /* lattice steps */
@@ -47,7 +54,8 @@ struct coarse_tile {
     struct slope_grid slopes; /* at the corners of the parent's cells */
     struct scree_mesh mesh;
     struct border_line lines[SIDE_COUNT];
-    double max_error_m; /* of the mesh, against the samples of the tile that left it */
+    double max_error_m;        /* of the mesh, against the samples of the tile that left it */
+    struct fitted_tile fitted; /* the mesh once more, fitted; empty when nobody asked */
 };
 
 /* Heights of a tile of the finest zoom, with a margin of one post on every side for the slopes. */
@@ -76,6 +84,9 @@ enum scree_status tile_from_children(struct scree_memory *memory, const struct t
                                      const struct coarse_tile *const children[4], struct tile *tile,
                                      struct scree_error *error);
 
+/* The side of a child that no window cuts, in lattice steps. */
+int32_t tile_child_span(const struct coarse_tile *const children[4]);
+
 /* Which written form the coming rungs end in. */
 void tile_set_codes(struct tile *tile, struct code_frame codes);
 
@@ -96,6 +107,9 @@ struct tile_rung {
  * whatever their border lines drop. */
 enum scree_status tile_look_ahead(struct tile *tile, const struct tile_rung *rungs, int count,
                                   struct scree_error *error);
+
+/* What a mesh of the tile is measured against that is written in `codes` within a tolerance. */
+struct samples tile_samples_written(const struct tile *tile, struct code_frame codes, double tolerance_m);
 
 /* What holds now: the largest error over all samples, and the mean minimum quadric error. */
 double tile_max_error_m(const struct tile *tile);

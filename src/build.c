@@ -181,6 +181,7 @@ enum scree_status build_run(const struct build_options *options, const struct py
     pyramid.max_zoom = build->max_zoom;
     pyramid.no_normals = options->no_normals;
     pyramid.plain = options->plain;
+    pyramid.fits = options->fits;
     pyramid.rungs_per_increment = options->rungs_per_increment;
     pyramid.method = options->method;
     pyramid.threads = options->threads;

@@ -19,6 +19,7 @@ struct build_options {
     struct ladder_options ladder;
     bool no_terrain, no_stream;         /* products that are not written; what is there of them already is left alone */
     bool no_normals, plain;             /* of terrain */
+    bool fits;                          /* static tiles are fitted to the posts (lod/fit.h) */
     uint32_t rungs_per_increment;       /* of streams; 0: 1 */
     const struct method_choice *method; /* of the literature, for terrain alone; NULL: Scree's own way */
     int threads;

@@ -34,6 +34,8 @@ static const char help[] =
     "  --lossless           streams end with every post; heights that are no multiple of the heights' step, which\n"
     "                       is a power of two of at most 1 m, are rounded to it\n"
     "  --rungs-per-increment N   rungs that each increment of a stream spans, default 1\n"
+    "  --fit                static tiles are fitted to the posts by least squares, within the same error: fewer\n"
+    "                       triangles, and closer in the mean; streams stay as they are\n"
     "  --method NAME        static tiles by a method of the literature, without streams; list names them all\n"
     "  --method-option NAME=VALUE   an option of it: 50, a list by zoom 0:50,5:20, or 400/2 or 4*2, which halve or\n"
     "                       double from zoom 0 on; may be given for several\n"
@@ -140,7 +142,10 @@ static int choose_method(struct arguments *arguments) {
     const char *name = arguments->method_name;
     if (name == NULL && arguments->method_setting_count > 0)
         return usage("which method? Name it with --method, for --method-option ", arguments->method_settings[0]);
+    if (name == NULL && arguments->build.fits && arguments->build.no_terrain)
+        return usage("--fit is for static tiles: ask for --products with terrain", "");
     if (name == NULL) return EXIT_DONE;
+    if (arguments->build.fits) return usage("--fit is for Scree's own way, not for --method ", name);
     arguments->lists_methods = strcmp(name, "list") == 0;
     if (arguments->lists_methods) return EXIT_DONE;
     enum scree_status status = method_choose(name, &arguments->method, &error);
@@ -160,6 +165,7 @@ static int take(int argc, char **argv, int *at, struct arguments *arguments) {
     if (strcmp(name, "-q") == 0) return arguments->quiet = true, EXIT_DONE;
     if (strcmp(name, "--plain") == 0) return arguments->build.plain = true, EXIT_DONE;
     if (strcmp(name, "--lossless") == 0) return arguments->build.ladder.lossless = true, EXIT_DONE;
+    if (strcmp(name, "--fit") == 0) return arguments->build.fits = true, EXIT_DONE;
     if (strcmp(name, "--no-normals") == 0) return arguments->build.no_normals = true, EXIT_DONE;
     if (strcmp(name, "--config") == 0) {
         if (*at + 1 >= argc) return usage("--config wants a key and a value", "");

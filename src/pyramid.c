@@ -430,7 +430,7 @@ enum scree_status pyramid_build(const struct pyramid_options *options, struct py
     struct work work = {.options = options,
                         .pyramid = pyramid,
                         .plan = {options->lattice, options->ladder, options->nodata_height_m, options->no_normals,
-                                 options->plain, options->rungs_per_increment, options->method}};
+                                 options->plain, options->fits, options->rungs_per_increment, options->method}};
     memset(pyramid, 0, sizeof *pyramid);
     if (pthread_mutex_init(&work.lock, NULL) != 0) return scree_fail(error, SCREE_E_LIMIT, "no lock can be made");
     for (int zoom = 0; zoom <= options->lattice->finest_zoom && status == SCREE_OK; zoom++)

@@ -32,6 +32,7 @@ struct pyramid_options {
     double nodata_height_m;
     int min_zoom, max_zoom; /* tiles of other zooms are made but not written */
     bool no_normals, plain; /* without octvertexnormals; without gzip */
+    bool fits;              /* static tiles are fitted to the posts (lod/fit.h) */
     int threads;            /* at least 1 */
     uint32_t rungs_per_increment;
     const struct method_choice *method;  /* of the literature, that makes the static tiles; NULL: Scree's own way */

@@ -1,6 +1,7 @@
 #include "src/tile_build.h"
 
 #include "lod/compact.h"
+#include "lod/tile_fit.h"
 #include "src/quantized_mesh.h"
 #include "src/stream_place.h"
 #include "stream/encode.h"
@@ -85,6 +86,14 @@ static void begin(struct tile_walk *walk, struct tile_id id) {
     walk->rung = RUNGS_A_ZOOM * id.zoom;
 }
 
+/* Fits the mesh as it is for a static tile of `zoom`, if that is wanted. */
+static enum scree_status fit(const struct tile_plan *plan, const struct tile_walk *walk, int zoom,
+                             struct fitted_tile *fitted, struct scree_error *error) {
+    if (!plan->fits) return SCREE_OK;
+    return tile_fit_new(&walk->tile, tile_place_frame(plan, walk->id, zoom), plan->ladder->tolerance_m[zoom], fitted,
+                        error);
+}
+
 /* ---- the three makers ---- */
 
 static enum scree_status read_posts(const struct tile_plan *plan, struct tile_id id, struct raster_reader *reader,
@@ -104,6 +113,7 @@ enum scree_status tile_build_finest(const struct tile_plan *plan, struct tile_id
     begin(walk, id);
     enum scree_status status = read_posts(plan, id, reader, memory, &walk->tile, error);
     if (status == SCREE_OK) status = take_grid_down(plan, walk, record, error);
+    if (status == SCREE_OK) status = fit(plan, walk, id.zoom, &walk->fitted, error);
     if (status != SCREE_OK) tile_walk_release(walk);
     return status;
 }
@@ -122,6 +132,7 @@ enum scree_status tile_build_level(const struct tile_plan *plan, struct tile_id 
     if (status == SCREE_OK) status = take_to(plan, walk, walk->rung, error);
     if (status == SCREE_OK) status = tile_lock(&walk->tile, locked_step, error);
     if (status == SCREE_OK) walk->max_error_m = tile_max_error_m(&walk->tile);
+    if (status == SCREE_OK) status = fit(plan, walk, id.zoom, &walk->fitted, error);
     if (status == SCREE_OK) status = start_recording(walk, record, walk->max_error_m, error);
     if (status != SCREE_OK) tile_walk_release(walk);
     return status;
@@ -136,6 +147,7 @@ enum scree_status tile_build_parent(const struct tile_plan *plan, struct tile_id
     for (int i = 0; i < 4; i++)
         if (children[i] != NULL) walk->max_error_m = fmax(walk->max_error_m, children[i]->max_error_m);
     enum scree_status status = tile_from_children(memory, &geometry, children, &walk->tile, error);
+    if (status == SCREE_OK && plan->fits) status = tile_fit_join_new(&walk->tile, children, &walk->fitted, error);
     if (status == SCREE_OK) status = start_recording(walk, record, walk->max_error_m, error);
     if (status != SCREE_OK) tile_walk_release(walk);
     return status;
@@ -158,19 +170,20 @@ enum scree_status tile_build_write(const struct tile_plan *plan, const struct ti
     const struct tile *tile = &walk->tile;
     struct tile_id id = walk->id;
     struct scree_memory *memory = tile->memory;
-    struct scree_mesh mesh = {0};
+    struct scree_mesh own = {0};
+    const struct scree_mesh *mesh = plan->fits ? &walk->fitted.mesh : &own;
     unsigned char *bytes = NULL;
     float *slopes = NULL;
     size_t size_bytes, written_bytes;
-    enum scree_status status = mesh_export_new(memory, &tile->mesh, &mesh, error);
-    if (status != SCREE_OK) goto cleanup;
-    if (!plan->no_normals && (slopes = vertex_slopes_new(tile, &mesh, error)) == NULL) {
+    enum scree_status status = SCREE_OK;
+    if (!plan->fits && (status = mesh_export_new(memory, &tile->mesh, &own, error)) != SCREE_OK) goto cleanup;
+    if (!plan->no_normals && (slopes = vertex_slopes_new(tile, mesh, error)) == NULL) {
         status = SCREE_E_MEMORY;
         goto cleanup;
     }
     struct terrain_tile terrain = {.lattice = plan->lattice,
                                    .id = id,
-                                   .mesh = &mesh,
+                                   .mesh = mesh,
                                    .slopes = slopes,
                                    .height_unit_m = plan->ladder->height_unit_m,
                                    .border_step = plan->ladder->border_step[id.zoom]};
@@ -178,17 +191,17 @@ enum scree_status tile_build_write(const struct tile_plan *plan, const struct ti
     if (status != SCREE_OK) goto cleanup;
     status = tile_store_write(store, id, bytes, size_bytes, !plan->plain, &written_bytes, error);
     if (status != SCREE_OK) goto cleanup;
-    statistics->vertices = mesh.vertex_count;
-    statistics->triangles = mesh.triangle_count;
+    statistics->vertices = mesh->vertex_count;
+    statistics->triangles = mesh->triangle_count;
     statistics->bytes = written_bytes;
     statistics->tolerance_m = plan->ladder->tolerance_m[id.zoom];
-    statistics->max_error_m = walk->max_error_m;
-    statistics->mmqe_m2 = tile_mmqe_m2(tile);
+    statistics->max_error_m = plan->fits ? walk->fitted.max_error_m : walk->max_error_m;
+    statistics->mmqe_m2 = plan->fits ? walk->fitted.mmqe_m2 : tile_mmqe_m2(tile);
 cleanup:
     scree_release(memory, bytes);
     scree_release(memory, slopes);
-    scree_release(memory, mesh.corners);
-    scree_release(memory, mesh.vertices);
+    scree_release(memory, own.corners);
+    scree_release(memory, own.vertices);
     return status;
 }
 
@@ -198,6 +211,7 @@ enum scree_status tile_build_hand_up(const struct tile_plan *plan, struct tile_w
     enum scree_status status = SCREE_OK;
     *coarse = NULL;
     if (!is_root || walk->is_recorded) status = walk_to(plan, walk, tile_coarsest_rung(walk->id), error);
+    if (status == SCREE_OK && !is_root) status = fit(plan, walk, walk->id.zoom - 1, &walk->tile.rest->fitted, error);
     return status == SCREE_OK && !is_root ? tile_hand_up_new(&walk->tile, coarse, error) : status;
 }
 
@@ -226,6 +240,7 @@ cleanup:
 
 void tile_walk_release(struct tile_walk *walk) {
     if (walk->is_recorded) recorder_release(&walk->recorder);
+    if (walk->tile.memory != NULL) fitted_tile_release(walk->tile.memory, &walk->fitted);
     tile_release(&walk->tile);
     walk->is_recorded = false;
 }

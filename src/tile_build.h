@@ -19,6 +19,7 @@ struct tile_walk {
     int rung;
     double max_error_m; /* of the mesh at the rung of its zoom */
     struct tile tile;
+    struct fitted_tile fitted; /* for the static tile; empty where nothing is fitted */
     bool is_recorded;
     struct recorder recorder;
 };

@@ -14,7 +14,7 @@ struct tile_plan {
     const struct lattice *lattice;
     const struct ladder *ladder;
     double nodata_height_m;
-    bool no_normals, plain;
+    bool no_normals, plain, fits; /* see struct pyramid_options */
     uint32_t rungs_per_increment; /* of streams; 0: 1 */
     const struct method_choice *method;
 };
