@@ -1,5 +1,6 @@
 #include "lod/method_qem.h"
 
+#include "lod/fit.h"
 #include "lod/method_greedy.h"
 #include "lod/simplify.h"
 
@@ -156,7 +157,11 @@ static enum scree_status simplify(struct work *work, const struct method_qem_opt
     if (status != SCREE_OK) return status;
     simplify_interior(&work->simplifier, options->is_unbounded ? (float)FINEST_CLASS_M : (float)options->tolerance_m);
     simplifier_release(&work->simplifier);
-    return SCREE_OK;
+    if (!options->fits) return SCREE_OK;
+    const struct fit_options fit = {.tolerance_m = options->is_unbounded ? INFINITY : options->tolerance_m,
+                                    .thins = !options->is_unbounded,
+                                    .least_vertices = own.least_vertices};
+    return fit_mesh(work->memory, &work->mesh, &work->samples, &fit, work->error);
 }
 
 static enum scree_status hand_out(const struct work *work, struct method_mesh *mesh) {

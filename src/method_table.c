@@ -40,11 +40,22 @@ static const char *contradiction_qem(const double values[]) {
     return values[1] == 0 && isnan(values[2]) ? "bound=0 wants vertices=4 or more, to know where to stop" : NULL;
 }
 
+static struct method_qem_options qem_values(const double values[]) {
+    return (struct method_qem_options){.tolerance_m = values[0],
+                                       .is_unbounded = values[1] == 0,
+                                       .least_vertices = isnan(values[2]) ? 0 : (uint32_t)values[2]};
+}
+
 static enum scree_status run_qem(struct scree_memory *memory, const struct method_tile *tile, const double values[],
                                  struct method_mesh *mesh, struct scree_error *error) {
-    const struct method_qem_options options = {.tolerance_m = values[0],
-                                               .is_unbounded = values[1] == 0,
-                                               .least_vertices = isnan(values[2]) ? 0 : (uint32_t)values[2]};
+    const struct method_qem_options options = qem_values(values);
+    return method_qem(memory, tile, &options, mesh, error);
+}
+
+static enum scree_status run_qem_fit(struct scree_memory *memory, const struct method_tile *tile, const double values[],
+                                     struct method_mesh *mesh, struct scree_error *error) {
+    struct method_qem_options options = qem_values(values);
+    options.fits = true;
     return method_qem(memory, tile, &options, mesh, error);
 }
 
@@ -186,6 +197,8 @@ const struct method method_table[] = {
      run_greedy},
     {"qem", "Scree's own collapse on the posts of a zoom: fewest triangles within a vertical error",
      OPTIONS(qem_options), contradiction_qem, run_qem},
+    {"qem-fit", "the same, then fitted to the posts by least squares: least error in the mean", OPTIONS(qem_options),
+     contradiction_qem, run_qem_fit},
     {"lindstrom-turk", "Lindstrom and Turk's edge collapse: vertices between the posts, smooth and close in the mean",
      OPTIONS(lindstrom_turk_options), contradiction_lindstrom_turk, run_lindstrom_turk},
     {"quadtree", "Cifuentes' quadtree of leaves with little curvature: quick, holds no bound",
