@@ -12,7 +12,8 @@ constexpr uint32_t RUNGS_AHEAD = 4;                   // an octave: what has to 
 constexpr uint64_t BYTES_A_TRIANGLE = 256;            // of memory: 225 to 253 were measured
 constexpr uint64_t BYTES_A_BASE = 2u << 20;           // of a tile of which nothing is known yet
 constexpr size_t BYTES_A_FRAME = 1u << 20;            // to the graphics card, for tiles that have come
-constexpr size_t CHANGES_A_FRAME = 8;                 // of rungs, while levels move
+constexpr int64_t SPLITS_A_FRAME = 12000;             // while levels move
+constexpr int64_t SPLITS_A_STITCH = 1500;             // what stitching a tile and its neighbours takes, in splits
 constexpr double SLIGHT = 1e-6;                       // of a rung: nobody sees it
 constexpr std::ptrdiff_t DATA_TILES = 16;             // so many are read to learn the heights
 constexpr double LOWEST_M = -12000, HIGHEST_M = 9000; // until the roots have told
@@ -185,8 +186,8 @@ void TerrainSet::choose(const scree_view &view, const TerrainSettings &settings)
         for (uint32_t i = 0; i < selection.drawn_count; i++) selected[i].level = selected[i].rung;
 }
 
-// So many tiles may change their rung in a frame, those first that are farthest behind; the others wait at the end of
-// the rung that they show.
+// How much may change in a frame: those tiles first that are farthest behind; the others wait at the end of the rung
+// that they show.
 void TerrainSet::spread() {
     std::vector<std::pair<double, uint32_t>> due;
     const std::vector<CutTile> &tiles_now = cut->tiles();
@@ -197,9 +198,13 @@ void TerrainSet::spread() {
         if (was_drawn && (ahead > 0 || ahead <= -1)) due.emplace_back(-std::fabs(ahead), i);
     }
     std::sort(due.begin(), due.end());
-    for (size_t i = CHANGES_A_FRAME; i < due.size(); i++) {
-        uint32_t rung = held[tiles_now[due[i].second].tile].mesh->rung();
-        cut->hold(due[i].second, tiles_now[due[i].second].level > rung ? rung : rung - 1 + SLIGHT);
+    int64_t left = SPLITS_A_FRAME;
+    for (const auto &[order, i] : due) {
+        const TileMesh &mesh = *held[tiles_now[i].tile].mesh;
+        const scree_rung *rungs = mesh.header().rungs;
+        uint32_t from = mesh.rung(), to = (uint32_t)std::ceil(tiles_now[i].level);
+        if (left <= 0) cut->hold(i, to > from ? from : from - 1 + SLIGHT);
+        left -= SPLITS_A_STITCH + std::abs((int64_t)rungs[to].vertex_count - (int64_t)rungs[from].vertex_count);
     }
 }
 
