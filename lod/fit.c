@@ -7,6 +7,7 @@
 
 #define LEAST_GAIN   1e-4 /* share of a sum that a change has to save */
 #define FINAL_ROUNDS 2    /* of turning edges and moving vertices; measured: four more gain another 2 % */
+#define WORTHWHILE   32   /* a thinning that takes fewer than one vertex in so many is the last */
 #define THINNINGS    3    /* of a mesh, each after a round of its own; measured: 10, 3 and 1 % of the triangles go */
 
 struct fit {
@@ -245,9 +246,12 @@ static enum scree_status thin(struct scree_memory *memory, struct mesh *mesh, co
 enum scree_status fit_mesh(struct scree_memory *memory, struct mesh *mesh, const struct samples *samples,
                            const struct fit_options *options, struct scree_error *error) {
     enum scree_status status = SCREE_OK;
-    for (int i = 0; i < THINNINGS && options->thins && status == SCREE_OK; i++) {
+    bool goes_on = options->thins;
+    for (int i = 0; i < THINNINGS && goes_on && status == SCREE_OK; i++) {
+        int32_t before = mesh->live_vertices;
         status = fit_rounds(memory, mesh, samples, options, 1, error);
         if (status == SCREE_OK) status = thin(memory, mesh, samples, options, error);
+        goes_on = before - mesh->live_vertices > before / WORTHWHILE;
     }
     return status == SCREE_OK ? fit_rounds(memory, mesh, samples, options, FINAL_ROUNDS, error) : status;
 }

@@ -27,6 +27,14 @@ static struct facet facet_of(const struct samples *samples, const struct sample 
                           .drop = drop};
 }
 
+/* Not those of the library, which look for NaN. */
+static inline double smaller(double a, double b) {
+    return a < b ? a : b;
+}
+static inline double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
 /* What is done with a sample. */
 enum purpose { PURPOSE_SUM, PURPOSE_NARROW };
 
@@ -44,8 +52,8 @@ static inline void take(struct task *task, double residual_m, double weight) {
         task->sums.rr_m2 += residual_m * residual_m;
         task->sums.max_m = size_m > task->sums.max_m ? size_m : task->sums.max_m;
     } else if (weight > 0) {
-        task->low_m = fmax(task->low_m, (residual_m - task->limit_m) / weight);
-        task->high_m = fmin(task->high_m, (residual_m + task->limit_m) / weight);
+        task->low_m = larger(task->low_m, (residual_m - task->limit_m) / weight);
+        task->high_m = smaller(task->high_m, (residual_m + task->limit_m) / weight);
     }
 }
 
@@ -114,13 +122,13 @@ static inline int32_t clamp_cell(int64_t position, int32_t span, int32_t cells) 
 /* Where the part of an edge between two heights reaches, widened to whole steps. */
 static inline void reach(const struct sample *a, const struct sample *b, double low, double high, double *left,
                          double *right) {
-    double bottom = fmax(fmin(a->y, b->y), low), top = fmin(fmax(a->y, b->y), high);
+    double bottom = larger(smaller(a->y, b->y), low), top = smaller(larger(a->y, b->y), high);
     if (bottom > top) return;
     double slope = a->y == b->y ? 0 : (double)(b->x - a->x) / (b->y - a->y);
     double from = a->y == b->y ? a->x : a->x + slope * (bottom - a->y);
     double to = a->y == b->y ? b->x : a->x + slope * (top - a->y);
-    *left = fmin(*left, fmin(from, to));
-    *right = fmax(*right, fmax(from, to));
+    *left = smaller(*left, smaller(from, to));
+    *right = larger(*right, larger(from, to));
 }
 
 static inline void take_extremes(const struct samples *samples, struct task *task, const struct facet *facet,
