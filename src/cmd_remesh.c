@@ -26,8 +26,9 @@ static const char help[] =
     "  --threshold T        squares of posts stay whole up to this sum of curvature, the change of slope over two\n"
     "                       posts at each post; default 1\n"
     "  --reach M            at this distance from the observer the threshold is T; nearer and farther it is smaller\n"
-    "                       and larger in proportion. Default: 64 posts, so that 1 comes out near a milliradian,\n"
-    "                       about a pixel on a screen of 1080 rows\n"
+    "                       and larger in proportion. Default: 64 posts, where T 1 makes an RMS error of some 0.3\n"
+    "                       milliradians, a third of a pixel on a screen of 1080 rows; single posts err ten times\n"
+    "                       as much\n"
     "  -q                   say nothing but errors\n"
     "  --config KEY VALUE   a GDAL configuration option\n" RASTER_ARGUMENTS_HELP
     "\nThe raster's own pixels are the posts, up to 32769 a side; it takes about 14 bytes of memory a post and 200 a\n"

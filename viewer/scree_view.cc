@@ -1,4 +1,5 @@
 // scree-view: a terrain of streams on the screen, in pictures, and in figures. docs/osg.md tells how to use it.
+#include "viewer/run_quadtree.h"
 #include "viewer/session.h"
 
 #include <cstdio>
@@ -13,13 +14,15 @@ const double TOUR_S = 60; // --benchmark without a flight of its own
 
 void print_help() {
     printf("Usage: scree-view OUT|FILE [OPTION]...\n"
+           "       scree-view --quadtree DEM [OPTION]...\n"
            "Shows a terrain that scree build wrote: OUT, OUT/stream, a scree.json or a single .scree file.\n\n%s\n"
            "Keys:\n%s\n"
+           "Keys with --quadtree:\n%s\n"
            "A camera's longitude and latitude are in degrees (of a local CRS that is not known: its coordinates), its\n"
            "height is in metres above what the terrain's heights are above, its heading clockwise from north, its\n"
            "pitch negative below the horizon.\n\n"
            "Exit codes: 0 done, 1 failed (no terrain, no display, no OpenGL, output), 2 wrong usage.\n",
-           view_options_help().c_str(), keys_help().c_str());
+           view_options_help().c_str(), keys_help().c_str(), quadtree_keys_help().c_str());
 }
 
 bool plan_flight(Session *session, std::string *error) {
@@ -64,7 +67,7 @@ int main(int argc, char **argv) {
     int code = DONE;
     if (arguments.help) {
         print_help();
-    } else if (!run(arguments, &error)) {
+    } else if (!(arguments.quadtree.empty() ? run(arguments, &error) : run_quadtree(arguments, &error))) {
         fprintf(stderr, "scree-view: %s\n", error.c_str());
         code = FAILED;
     }

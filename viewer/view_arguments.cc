@@ -53,6 +53,13 @@ struct Option {
 
 using Text = const std::string &;
 
+bool take_quadtree(ViewArguments *all, Text text) {
+    return parse_path(text, &all->quadtree);
+}
+bool take_threshold(ViewArguments *all, Text text) {
+    all->has_threshold = true;
+    return parse_number(text, 0, 1e6, &all->threshold);
+}
 bool take_svo(ViewArguments *all, Text text) {
     return parse_number(text, 1e-9, 1e9, &all->options.settings.manual_svo_m);
 }
@@ -145,6 +152,9 @@ const Option options[] = {
     {"--trace-tiles", "FILE.csv", "write a row for every tile of every frame", take_tiles_trace},
     {"--pictures", "DIR", "fly off screen, and write pictures of the flight into this folder", take_pictures},
     {"--every", "N", "a picture every so many frames (10)", take_every},
+    {"--quadtree", "DEM", "instead of a terrain: any raster, as a mesh that follows the observer", take_quadtree},
+    {"--threshold", "T", "of --quadtree: the curvature, as of scree remesh, that a square may have (1)",
+     take_threshold},
     {"--help", "", "this text", take_help},
 };
 
@@ -189,7 +199,10 @@ bool take_option(const std::vector<std::string> &words, size_t *at, ViewArgument
 // What makes no sense together.
 const char *contradiction(const ViewArguments &arguments) {
     const bool is_flight = !arguments.fly.empty() || arguments.play_s > 0 || arguments.benchmark;
-    if (arguments.terrain.empty()) return "which terrain? Give what scree build wrote, or a .scree file";
+    if (!arguments.quadtree.empty() && !arguments.terrain.empty()) return "--quadtree shows a raster, and no terrain";
+    if (arguments.quadtree.empty() && arguments.terrain.empty())
+        return "which terrain? Give what scree build wrote, or a .scree file";
+    if (arguments.quadtree.empty() && arguments.has_threshold) return "--threshold goes with --quadtree";
     if (!arguments.screenshot.empty() && (is_flight || !arguments.pictures.empty()))
         return "--screenshot takes one picture and does not fly; --pictures does";
     if (!arguments.pictures.empty() && !is_flight) return "--pictures wants --fly, --play or --benchmark";
@@ -198,6 +211,19 @@ const char *contradiction(const ViewArguments &arguments) {
     if (arguments.options.settings.colour == TerrainColour::TEXTURE && arguments.options.texture.empty())
         return "--colour texture wants --texture IMAGE";
     return nullptr;
+}
+
+// The options that --quadtree has no use for; "": none of the words.
+std::string useless_for_quadtree(const std::vector<std::string> &words) {
+    static const char *const useful[] = {"--quadtree",   "--threshold", "--wireframe",  "--size",
+                                         "--background", "--camera",    "--screenshot", "--fly",
+                                         "--benchmark",  "--frames",    "--pictures",   "--every"};
+    for (const std::string &word : words) {
+        const std::string name = word.substr(0, word.find('='));
+        const bool is_useful = std::find(std::begin(useful), std::end(useful), name) != std::end(useful);
+        if (find_option(name) != nullptr && !is_useful) return name;
+    }
+    return "";
 }
 
 } // namespace
@@ -217,7 +243,9 @@ bool parse_view_arguments(const std::vector<std::string> &words, ViewArguments *
     }
     const char *wrong = contradiction(*arguments);
     if (wrong != nullptr) *error = wrong;
-    return wrong == nullptr;
+    const std::string useless = arguments->quadtree.empty() ? "" : useless_for_quadtree(words);
+    if (wrong == nullptr && !useless.empty()) *error = useless + " does not go with --quadtree";
+    return wrong == nullptr && useless.empty();
 }
 
 std::string view_options_help() {

@@ -11,6 +11,9 @@
 struct ViewArguments {
     bool help = false;
     std::string terrain;
+    std::string quadtree; // a raster, shown instead of a terrain of streams
+    bool has_threshold = false;
+    double threshold = 1; // of its quadtree, at 64 posts from the observer
     TerrainOptions options;
     int width_px = 1280, height_px = 800;
     bool orthogonal = false, wireframe = false;
