@@ -24,6 +24,15 @@ osg::Vec4 colour_of(uint32_t number) {
     return osg::Vec4(0.35f + 0.6f * part(0), 0.35f + 0.6f * part(4), 0.35f + 0.6f * part(2), 1);
 }
 
+// Takes the near and the far plane apart as far as the box, which is turned against the axes of the world, reaches.
+void take_depths(const osg::BoundingBox &box, const osg::Matrixd &to_eye, osgUtil::CullVisitor *visitor) {
+    for (unsigned i = 0; i < 8; i++) {
+        double depth = -(osg::Vec3d(box.corner(i)) * to_eye).z();
+        if (depth < visitor->getCalculatedNearPlane()) visitor->setCalculatedNearPlane(depth);
+        if (depth > visitor->getCalculatedFarPlane()) visitor->setCalculatedFarPlane(depth);
+    }
+}
+
 } // namespace
 
 struct TerrainNode::Inside {
@@ -190,7 +199,7 @@ void TerrainNode::Inside::put(osgUtil::CullVisitor &visitor) {
     for (const auto &[distance_m, i] : order) {
         TileDrawable &drawable = *drawables[i];
         if (visitor.getComputeNearFarMode() != osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR)
-            visitor.updateCalculatedNearFar(drawable.frame_matrix() * *view, drawable.computeBoundingBox());
+            take_depths(drawable.computeBoundingBox(), drawable.frame_matrix() * *view, &visitor);
         visitor.addDrawableAndDepth(&drawable, view, (float)distance_m);
     }
     visitor.popStateSet();
