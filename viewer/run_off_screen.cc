@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 
-static const double PATIENCE_S = 300; // for a terrain that is still on its way
+static const double PATIENCE_S = 120; // for a terrain that is still on its way
+static const double QUIET_S = 1;      // nothing has come or changed for so long: a budget allows no more
 
 Frame Session::draw(double time_s, const osg::Matrixd *camera, const std::string &figures, const std::string &note) {
     const TerrainNode *terrain = stage.terrain.get();
@@ -20,12 +21,18 @@ Frame Session::draw(double time_s, const osg::Matrixd *camera, const std::string
     return frame;
 }
 
-// Draws until all that the view wants is there.
+// Draws until all that the view wants is there, or no more of it comes.
 static bool settle(Session *session, const osg::Matrixd &camera, std::string *error) {
     const double begin_s = now_s();
-    for (int settled = 0; settled < 3;) {
+    double changed_s = begin_s;
+    uint64_t bytes_loaded = 0;
+    for (int settled = 0; settled < 3 && now_s() < changed_s + QUIET_S;) {
         session->stage.draw(&camera, "", "");
+        const TerrainFigures figures = session->stage.terrain->figures();
         settled = session->stage.terrain->is_settled() ? settled + 1 : 0;
+        if (figures.tiles_loading > 0 || figures.splits > 0 || figures.bytes_loaded != bytes_loaded)
+            changed_s = now_s();
+        bytes_loaded = figures.bytes_loaded;
         if (now_s() < begin_s + PATIENCE_S) continue;
         *error = "the terrain did not arrive within " + std::to_string((int)PATIENCE_S) + " s";
         return false;
