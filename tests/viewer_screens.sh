@@ -127,7 +127,7 @@ done
 
 # A short flight with its table, its pictures and its sum.
 printf '0 -118.04 34.37 6000 30 -35\n1 -117.98 34.42 3500 60 -30\n' >"$folder/flight.txt"
-"$view" "$folder/out" --fly "$folder/flight.txt" --frames 12 --benchmark --trace "$folder/frames.csv" --size 160x120 \
+"$view" "$folder/out" --fly "$folder/flight.txt" --frames 12 --benchmark --trace "$folder/frames.csv" --size 160x120 --memory 16 \
     --pictures "$folder/pictures" --every 4 >"$folder/said" 2>&1 || { cat "$folder/said"; fail "no flight"; }
 [ "$(wc -l <"$folder/frames.csv")" = 13 ] || fail "the table of 12 frames has $(wc -l <"$folder/frames.csv") lines"
 [ "$(find "$folder/pictures" -name '*.png' | wc -l)" = 3 ] || fail "not three pictures of the flight"
