@@ -195,7 +195,7 @@ static enum scree_status run_wlop(struct scree_memory *memory, const struct meth
 const struct method method_table[] = {
     {"greedy", "Garland and Heckbert's insertion: fast, keeps to a vertical error", OPTIONS(greedy_options), NULL,
      run_greedy},
-    {"qem", "Scree's own collapse on the posts of a zoom: fewest triangles within a vertical error",
+    {"qem", "Scree's own collapse on the posts of a zoom: few triangles within a vertical error",
      OPTIONS(qem_options), contradiction_qem, run_qem},
     {"qem-fit", "the same, then fitted to the posts by least squares: least error in the mean", OPTIONS(qem_options),
      contradiction_qem, run_qem_fit},
