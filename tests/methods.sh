@@ -3,22 +3,7 @@
 # a root that no data touch; all promises hold, and any number of threads gives the same bytes. Wrong options are told
 # in a line that names them.
 set -u
-scree=$TOP_BUILDDIR/scree
-folder=$(mktemp -d) || exit 99
-trap 'rm -rf "$folder"' EXIT
-failed=0
-# expect CODE WORDS ARGUMENT...: the exit code, and words in what is printed.
-expect() {
-    code=$1 words=$2
-    shift 2
-    "$scree" "$@" >"$folder/printed" 2>&1
-    got=$?
-    if [ $got -ne "$code" ] || ! grep -q -e "$words" "$folder/printed"; then
-        echo "scree $*: exit code $got (wanted $code), and '$words' was wanted in:"
-        cat "$folder/printed"
-        failed=1
-    fi
-}
+. "$TOP_SRCDIR/tests/expect.sh"
 
 "$TOP_BUILDDIR/tests/fractal_dem" -o "$folder/local.tif" --size 130 --rows 300 --epsg 32611 --spacing-m 30 || exit 99
 "$TOP_BUILDDIR/tests/fractal_dem" -o "$folder/globe.tif" --size 60 --rows 50 --west 11.3 --south 44.9 \

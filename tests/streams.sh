@@ -2,22 +2,7 @@
 # Streams from build to mesh: info, extract and verify on a set that build made; when a stream is lost, spoilt or cut
 # off, one promise is told to be broken in a line that names it, and the exit code is 1.
 set -u
-scree=$TOP_BUILDDIR/scree
-folder=$(mktemp -d) || exit 99
-trap 'rm -rf "$folder"' EXIT
-failed=0
-# expect CODE WORD ARGUMENT...: the exit code, and a word in what is printed.
-expect() {
-    code=$1 word=$2
-    shift 2
-    "$scree" "$@" >"$folder/printed" 2>&1
-    got=$?
-    if [ $got -ne "$code" ] || ! grep -q -e "$word" "$folder/printed"; then
-        echo "scree $*: exit code $got (wanted $code), and '$word' was wanted in:"
-        cat "$folder/printed"
-        failed=1
-    fi
-}
+. "$TOP_SRCDIR/tests/expect.sh"
 # lines N: so many were printed by the last command.
 lines() {
     [ "$(wc -l <"$folder/printed")" -eq "$1" ] && return

@@ -2,22 +2,7 @@
 # verify, info and extract on a terrain that build made: all promises hold; when a tile is lost, spoilt or foreign, one
 # of them is told to be broken and the exit code is 1.
 set -u
-scree=$TOP_BUILDDIR/scree
-folder=$(mktemp -d) || exit 99
-trap 'rm -rf "$folder"' EXIT
-failed=0
-# expect CODE WORD ARGUMENT...: the exit code, and a word in what is printed.
-expect() {
-    code=$1 word=$2
-    shift 2
-    "$scree" "$@" >"$folder/printed" 2>&1
-    got=$?
-    if [ $got -ne "$code" ] || ! grep -q -e "$word" "$folder/printed"; then
-        echo "scree $*: exit code $got (wanted $code), and '$word' was wanted in:"
-        cat "$folder/printed"
-        failed=1
-    fi
-}
+. "$TOP_SRCDIR/tests/expect.sh"
 
 "$TOP_BUILDDIR/tests/fractal_dem" -o "$folder/dem.tif" --size 700 --rows 500 --epsg 32611 --spacing-m 10 || exit 99
 "$TOP_BUILDDIR/tests/fractal_dem" -o "$folder/other.tif" --size 700 --rows 500 --epsg 32611 --spacing-m 10 --seed 2 ||

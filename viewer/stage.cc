@@ -52,24 +52,7 @@ void Stage::add_manipulators() {
 }
 
 bool Stage::open(std::string *error) {
-    osg::ref_ptr<osg::GraphicsContext> context =
-        open_window(arguments.width_px, arguments.height_px, arguments.is_off_screen(), error);
-    if (!context.valid()) return false;
-    viewer.setThreadingModel(osgViewer::Viewer::SingleThreaded);
-    osg::Camera *camera = viewer.getCamera();
-    camera->setGraphicsContext(context);
-    camera->setViewport(0, 0, context->getTraits()->width, context->getTraits()->height);
-    camera->setDrawBuffer(context->getTraits()->doubleBuffer ? GL_BACK : GL_FRONT);
-    camera->setReadBuffer(context->getTraits()->doubleBuffer ? GL_BACK : GL_FRONT);
-    camera->setProjectionResizePolicy(osg::Camera::FIXED);
-    // Near enough for a stand on the ground, and far enough for a look across a continent.
-    camera->setComputeNearFarMode(osg::CullSettings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES);
-    camera->setNearFarRatio(1e-5);
-    const unsigned sky = arguments.has_background ? arguments.background : 0xa9c7e8;
-    camera->setClearColor(
-        osg::Vec4((float)(sky >> 16 & 255) / 255, (float)(sky >> 8 & 255) / 255, (float)(sky & 255) / 255, 1));
-    camera->setFinalDrawCallback(frame_end);
-    viewer.setLightingMode(osg::View::NO_LIGHT);
+    if (!open_window(arguments, frame_end, &viewer, error)) return false;
     osg::ref_ptr<osg::Group> root = new osg::Group;
     root->addChild(scene);
     if (!arguments.is_off_screen()) {

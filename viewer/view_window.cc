@@ -10,9 +10,7 @@ osg::ref_ptr<osg::GraphicsContext> realized(osg::GraphicsContext::Traits *traits
     return context;
 }
 
-} // namespace
-
-osg::ref_ptr<osg::GraphicsContext> open_window(int width_px, int height_px, bool is_off_screen, std::string *error) {
+osg::ref_ptr<osg::GraphicsContext> context_new(int width_px, int height_px, bool is_off_screen) {
     osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
     traits->readDISPLAY();
     traits->setUndefinedScreenDetailsToDefaultScreen();
@@ -35,7 +33,33 @@ osg::ref_ptr<osg::GraphicsContext> open_window(int width_px, int height_px, bool
         context = realized(traits);
     }
     osg::setNotifyLevel(severity);
-    if (!context.valid())
-        *error = "no picture can be drawn here: DISPLAY has to name a display with OpenGL (xvfb-run makes one)";
     return context;
+}
+
+} // namespace
+
+bool open_window(const ViewArguments &arguments, FrameEnd *frame_end, osgViewer::Viewer *viewer, std::string *error) {
+    osg::ref_ptr<osg::GraphicsContext> context =
+        context_new(arguments.width_px, arguments.height_px, arguments.is_off_screen());
+    if (!context.valid()) {
+        *error = "no picture can be drawn here: DISPLAY has to name a display with OpenGL (xvfb-run makes one)";
+        return false;
+    }
+    viewer->setThreadingModel(osgViewer::Viewer::SingleThreaded);
+    osg::Camera *camera = viewer->getCamera();
+    const osg::GraphicsContext::Traits *traits = context->getTraits();
+    camera->setGraphicsContext(context);
+    camera->setViewport(0, 0, traits->width, traits->height);
+    camera->setDrawBuffer(traits->doubleBuffer ? GL_BACK : GL_FRONT);
+    camera->setReadBuffer(traits->doubleBuffer ? GL_BACK : GL_FRONT);
+    camera->setProjectionResizePolicy(osg::Camera::FIXED);
+    // Near enough for a stand on the ground, and far enough for a look across a continent.
+    camera->setComputeNearFarMode(osg::CullSettings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES);
+    camera->setNearFarRatio(1e-5);
+    const unsigned sky = arguments.has_background ? arguments.background : 0xa9c7e8;
+    camera->setClearColor(
+        osg::Vec4((float)(sky >> 16 & 255) / 255, (float)(sky >> 8 & 255) / 255, (float)(sky & 255) / 255, 1));
+    camera->setFinalDrawCallback(frame_end);
+    viewer->setLightingMode(osg::View::NO_LIGHT);
+    return true;
 }
