@@ -1,3 +1,4 @@
+# shellcheck shell=sh
 # To be sourced: a display to draw on. Where DISPLAY names none, Xvfb makes one, until the shell that sourced this calls
 # display_end (from its trap). display_begin says why and returns 1 where there is neither.
 
