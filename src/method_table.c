@@ -82,7 +82,8 @@ static enum scree_status run_lindstrom_turk(struct scree_memory *memory, const s
     const struct method_lindstrom_turk_options options = {.edges = by_edges ? (uint32_t)values[0] : 0,
                                                           .is_bounded = bounded,
                                                           .tolerance_m = values[1],
-                                                          .weights = {values[3], values[4], values[5]}};
+                                                          .weights = {values[3], values[4], values[5]},
+                                                          .codes = {(int64_t)TILE_CELLS * tile->cell_span, 0, 0}};
     return method_lindstrom_turk(memory, tile, &options, mesh, error);
 }
 
@@ -195,8 +196,8 @@ static enum scree_status run_wlop(struct scree_memory *memory, const struct meth
 const struct method method_table[] = {
     {"greedy", "Garland and Heckbert's insertion: fast, keeps to a vertical error", OPTIONS(greedy_options), NULL,
      run_greedy},
-    {"qem", "Scree's own collapse on the posts of a zoom: few triangles within a vertical error",
-     OPTIONS(qem_options), contradiction_qem, run_qem},
+    {"qem", "Scree's own collapse on the posts of a zoom: few triangles within a vertical error", OPTIONS(qem_options),
+     contradiction_qem, run_qem},
     {"qem-fit", "the same, then fitted to the posts by least squares: least error in the mean", OPTIONS(qem_options),
      contradiction_qem, run_qem_fit},
     {"lindstrom-turk", "Lindstrom and Turk's edge collapse: vertices between the posts, smooth and close in the mean",
