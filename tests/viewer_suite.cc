@@ -132,6 +132,40 @@ void test_no_crack(void) {
     CU_ASSERT_EQUAL(opened.log.size(), 0);
 }
 
+// Where a vertex is drawn, on its way from its origin.
+std::array<float, 3> drawn_at(const TileMesh &mesh, const TileVertex &vertex) {
+    float weight = std::clamp(mesh.levels[vertex.slot] + 1 - (float)vertex.increment, 0.f, 1.f);
+    return {(1 - weight) * vertex.delta[0], (1 - weight) * vertex.delta[1], (1 - weight) * vertex.delta[2]};
+}
+
+// A vertex that several tiles draw is at the same place on its way in all of them.
+void test_borders_move_together(void) {
+    Opened opened(streams_folder(), 0);
+    CU_ASSERT_FATAL(opened.is_open);
+    TerrainSettings settings;
+    size_t shared = 0, on_their_way = 0, apart = 0;
+    for (int frame = 0; frame < 60; frame++) {
+        opened.set->frame(flight_at(opened, frame / 59.0), settings, FRAME_S);
+        std::map<Place, std::pair<const TileMesh *, std::array<float, 3>>> places;
+        auto see = [&](const TileMesh &mesh, const TileVertex &vertex) {
+            if (vertex.slot == SLOT_OWN) return;
+            std::array<float, 3> at = drawn_at(mesh, vertex);
+            auto [known, is_new] = places.emplace(place_of(vertex), std::make_pair(&mesh, at));
+            if (is_new || known->second.first == &mesh) return;
+            shared++;
+            on_their_way += at[0] != 0 || at[1] != 0 || at[2] != 0;
+            apart += at != known->second.second;
+        };
+        for (const TerrainSet::Shown &one : opened.set->shown()) {
+            for (uint32_t i = 0; i < one.mesh->vertex_count(); i++) see(*one.mesh, one.mesh->vertices[i]);
+            for (const TileVertex &vertex : one.mesh->seam_vertices) see(*one.mesh, vertex);
+        }
+    }
+    CU_ASSERT(shared > 1000);
+    CU_ASSERT(on_their_way > 100);
+    CU_ASSERT_EQUAL(apart, 0);
+}
+
 // Vertices that two tiles share have the same normal in both.
 void test_light_has_no_seam(void) {
     Opened opened(streams_folder(), 0);
@@ -362,6 +396,7 @@ int main(int argc, char **argv) {
         const char *name;
         void (*run)(void);
     } tests[] = {{"no crack over a flight", test_no_crack},
+                 {"borders move together", test_borders_move_together},
                  {"light has no seam", test_light_has_no_seam},
                  {"moves smoothly", test_moves_smoothly},
                  {"keeps to its memory", test_keeps_to_its_memory},

@@ -28,14 +28,15 @@ IN vec2 scree_heights, scree_map;
 IN vec4 scree_normal, scree_origin_normal;
 uniform vec3 scree_eye_high, scree_eye_low;
 uniform mat4 scree_view, scree_projection;
-uniform float scree_level;
+uniform float scree_levels[64]; // SLOT_COUNT
 uniform bool scree_is_globe;
 uniform vec3 scree_sun; // to the east, north and up
 OUT float height, light;
 OUT vec2 map;
 void main() {
     // how far the vertex has come out of its origin: scree_morph_weight
-    float weight = clamp(scree_level + 1.0 - scree_normal.w, 0.0, 1.0);
+    float level = scree_levels[int(scree_origin_normal.w)];
+    float weight = clamp(level + 1.0 - scree_normal.w, 0.0, 1.0);
     vec3 place = (scree_high - scree_eye_high) + (scree_low - scree_eye_low) + (1.0 - weight) * scree_delta;
     gl_Position = scree_projection * (scree_view * vec4(place, 1.0));
     height = mix(scree_heights.y, scree_heights.x, weight);

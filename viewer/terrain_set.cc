@@ -8,12 +8,13 @@
 
 namespace {
 
-constexpr uint32_t RUNGS_AHEAD = 4;                   // an octave: what has to be decoded again is then little
-constexpr uint64_t BYTES_A_TRIANGLE = 256;            // of memory: 225 to 253 were measured
-constexpr uint64_t BYTES_A_BASE = 2u << 20;           // of a tile of which nothing is known yet
-constexpr size_t BYTES_A_FRAME = 1u << 20;            // to the graphics card, for tiles that have come
-constexpr int64_t SPLITS_A_FRAME = 12000;             // while levels move
-constexpr int64_t SPLITS_A_STITCH = 1500;             // what stitching a tile and its neighbours takes, in splits
+constexpr uint32_t RUNGS_AHEAD = 4;         // an octave: what has to be decoded again is then little
+constexpr uint64_t BYTES_A_TRIANGLE = 256;  // of memory: 225 to 253 were measured
+constexpr uint64_t BYTES_A_BASE = 2u << 20; // of a tile of which nothing is known yet
+constexpr size_t BYTES_A_FRAME = 1u << 20;  // to the graphics card, for tiles that have come
+constexpr int64_t SPLITS_A_FRAME = 12000;   // while levels move
+constexpr int64_t SPLITS_A_STITCH = 1500;   // what stitching a tile and its neighbours takes, in splits
+constexpr size_t MOST_NEIGHBOURS = SLOT_COUNT - SLOT_NEIGHBOURS;
 constexpr double SLIGHT = 1e-6;                       // of a rung: nobody sees it
 constexpr std::ptrdiff_t DATA_TILES = 16;             // so many are read to learn the heights
 constexpr double LOWEST_M = -12000, HIGHEST_M = 9000; // until the roots have told
@@ -97,7 +98,7 @@ std::pair<double, double> TerrainSet::data_heights_m() {
         LoadedTile tile = load_tile({i, 1, 0, manifest.path_of(tiles[i].id)}, world);
         if (tile.mesh == nullptr) continue;
         for (const TileVertex &vertex : tile.mesh->vertices) {
-            if (!TileMesh::is_on_data(vertex)) continue;
+            if (!is_on_data(vertex)) continue;
             lowest_m = std::min(lowest_m, (double)vertex.height_m);
             highest_m = std::max(highest_m, (double)vertex.height_m);
         }
@@ -228,6 +229,7 @@ void TerrainSet::seek() {
     bool is_same = drawn.size() == before.size();
     for (size_t i = 0; i < drawn.size() && is_same; i++) is_same = old_places[i] == i;
     is_due = changed;
+    is_moved.assign(drawn.size(), 0);
     if (!is_same) find_neighbours(old_places);
 }
 
@@ -236,15 +238,19 @@ void TerrainSet::find_neighbours(const std::vector<size_t> &old_places) {
     std::vector<scree_tile_id> ids;
     for (const Shown &one : drawn) ids.push_back(tiles[one.tile].id);
     uint32_t count = (uint32_t)ids.size();
-    std::vector<uint32_t> beside(count);
+    std::vector<uint32_t> at_side(count);
     std::vector<std::vector<TileMesh::Neighbour>> found(count);
+    beside.assign(count, {});
     for (uint32_t i = 0; i < count; i++) {
         for (int side = 0; side < SCREE_SIDES; side++) {
-            uint32_t at_side = scree_cut_neighbours(ids.data(), count, manifest.terrain.profile, &ids[i],
-                                                    (scree_side)side, beside.data(), count);
-            for (uint32_t k = 0; k < at_side; k++) found[i].push_back({drawn[beside[k]].mesh.get(), (scree_side)side});
+            uint32_t found_there = scree_cut_neighbours(ids.data(), count, manifest.terrain.profile, &ids[i],
+                                                        (scree_side)side, at_side.data(), count);
+            for (uint32_t k = 0; k < found_there; k++) {
+                found[i].push_back({drawn[at_side[k]].mesh.get(), (scree_side)side});
+                beside[i].push_back(at_side[k]);
+            }
         }
-        if (old_places[i] == SIZE_MAX || neighbours[old_places[i]] != found[i]) is_due[i] = 1;
+        if (old_places[i] == SIZE_MAX || neighbours[old_places[i]] != found[i]) is_due[i] = is_moved[i] = 1;
     }
     neighbours = std::move(found);
 }
@@ -258,11 +264,42 @@ void TerrainSet::stitch_changed(bool stitched) {
             if (stitched != was_stitched || others.count(beside.mesh) != 0) is_due[i] = 1;
     was_stitched = stitched;
     for (size_t i = 0; i < drawn.size(); i++)
-        if (is_due[i]) drawn[i].mesh->share_normals(neighbours[i]);
+        if (is_moved[i]) drawn[i].mesh->share_normals(neighbours[i]);
     for (size_t i = 0; i < drawn.size(); i++) {
         std::string error;
         if (is_due[i] && !drawn[i].mesh->stitch(stitched ? neighbours[i] : std::vector<TileMesh::Neighbour>{}, &error))
             log(manifest.path_of(tiles[drawn[i].tile].id) + ": " + error);
+    }
+}
+
+// By which level the vertices of a side morph, so that both tiles agree: by the finer tile's, whose vertices are drawn
+// on both sides. Beside tiles of a finer zoom, all that this one has are where they belong.
+float TerrainSet::side_level(uint32_t at, scree_side side) const {
+    const TileMesh &mesh = *drawn[at].mesh;
+    float level = (float)mesh.level();
+    for (size_t k = 0; k < beside[at].size(); k++) {
+        if (neighbours[at][k].side != side) continue;
+        const TileMesh &other = *neighbours[at][k].mesh;
+        int zooms = other.header().zoom - mesh.header().zoom;
+        bool is_same_ladder = zooms != 0 || other.header().rungs[0].rung == mesh.header().rungs[0].rung;
+        bool is_crowded = beside[at].size() > MOST_NEIGHBOURS || beside[beside[at][k]].size() > MOST_NEIGHBOURS;
+        if (zooms > 0 || !is_same_ladder || is_crowded) return LEVEL_FULL;
+        if (zooms == 0) level = std::max(level, (float)other.level());
+    }
+    return level;
+}
+
+void TerrainSet::agree_on_levels(bool stitched) {
+    for (uint32_t i = 0; i < drawn.size(); i++) {
+        TileMesh &mesh = *drawn[i].mesh;
+        std::fill_n(mesh.levels, SLOT_COUNT, (float)mesh.level());
+        for (int side = 0; side < SCREE_SIDES && stitched; side++)
+            mesh.levels[SLOT_SIDES + side] = side_level(i, (scree_side)side);
+        for (size_t k = 0; k < beside[i].size() && stitched; k++)
+            mesh.levels[std::min<size_t>(SLOT_NEIGHBOURS + k, SLOT_COUNT - 1)] =
+                beside[i].size() > MOST_NEIGHBOURS
+                    ? LEVEL_FULL
+                    : side_level(beside[i][k], (scree_side)((neighbours[i][k].side + 2) % SCREE_SIDES));
     }
 }
 
@@ -307,6 +344,7 @@ void TerrainSet::frame(const scree_view &view, const TerrainSettings &settings, 
     seek();
     told.seek_ms = watch.lap_ms();
     stitch_changed(settings.stitch);
+    agree_on_levels(settings.stitch);
     told.stitch_ms = watch.lap_ms();
     make_room(settings.memory_bytes);
     request(settings);
@@ -319,6 +357,7 @@ void TerrainSet::frame(const scree_view &view, const TerrainSettings &settings, 
 void TerrainSet::request(const TerrainSettings &settings) {
     std::deque<LoadRequest> requests;
     uint64_t taken = bytes_held() + (loaders == nullptr ? 0 : loaders->loading_bytes());
+    for (const LoadedTile &one : arrived) taken += one.mesh == nullptr ? 0 : one.mesh->bytes();
     uint64_t room = settings.memory_bytes > taken ? settings.memory_bytes - taken : 0;
     for (uint32_t tile : denied) is_final[tile] = 0;
     denied.clear();
@@ -340,6 +379,7 @@ void TerrainSet::request(const TerrainSettings &settings) {
     for (uint32_t tile : denied) is_final[tile] = 1;
     for (uint32_t i = 0; i < selection.wanted_count; i++)
         ask(wanted[i].tile, wanted[i].end_rung <= 1 ? 1 : wanted[i].end_rung + RUNGS_AHEAD, false);
+    asked = requests.size();
     if (loaders != nullptr) return loaders->want(std::move(requests));
     for (const LoadRequest &one : requests) take(load_tile(one, world));
 }
@@ -387,7 +427,5 @@ std::pair<double, double> TerrainSet::svo_range_m() const {
 
 bool TerrainSet::is_settled() const {
     if (is_first || !cut->is_still()) return false;
-    bool lacks = false;
-    for (uint32_t i = 0; i < selection.wanted_count; i++) lacks = lacks || !is_final[wanted[i].tile];
-    return !lacks && arrived.empty() && (loaders == nullptr || loaders->is_idle());
+    return asked == 0 && arrived.empty() && (loaders == nullptr || loaders->is_idle());
 }

@@ -54,6 +54,8 @@ class TerrainSet {
     void seek();
     void find_neighbours(const std::vector<size_t> &old_places);
     void stitch_changed(bool stitched);
+    float side_level(uint32_t at, scree_side side) const;
+    void agree_on_levels(bool stitched);
     uint64_t bytes_held() const;
     void tell_drawn();
     void request(const TerrainSettings &settings);
@@ -77,9 +79,12 @@ class TerrainSet {
     std::vector<double> workspace;
     std::vector<Shown> drawn;
     std::vector<std::vector<TileMesh::Neighbour>> neighbours; // of each drawn
-    std::vector<char> changed, is_due; // for each drawn: its triangles are others; it has to be stitched
+    std::vector<std::vector<uint32_t>> beside;                // the same, as places among the drawn
+    std::vector<char> changed, is_due, is_moved; // for each drawn: its triangles are others; it has to be stitched;
+                                                 // its neighbours are others
     bool was_stitched = true, is_first = true;
     uint64_t frame_number = 0;
+    size_t asked = 0; // requests of the last frame
     TerrainFigures told;
     std::vector<std::shared_ptr<TileMesh>> retired; // replaced or dropped, but perhaps still drawn
     std::deque<LoadedTile> arrived;

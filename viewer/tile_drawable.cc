@@ -162,7 +162,7 @@ void TileDrawable::set_uniforms(osg::State &state, osg::GLExtensions *gl) const 
     gl->glUniform3fv(at(UNIFORM_EYE_LOW), 1, low.ptr());
     gl->glUniformMatrix4fv(at(UNIFORM_VIEW), 1, GL_FALSE, turned.ptr());
     gl->glUniformMatrix4fv(at(UNIFORM_PROJECTION), 1, GL_FALSE, projection.ptr());
-    gl->glUniform1f(at(UNIFORM_LEVEL), (float)tile->level());
+    gl->glUniform1fv(at(UNIFORM_LEVELS), SLOT_COUNT, tile->levels);
     gl->glUniform4fv(at(UNIFORM_COLOUR), 1, colour.ptr());
 }
 

@@ -7,44 +7,9 @@ extern "C" {
 #include "stream/player.h"
 }
 
-namespace {
-
-constexpr double PLACE_STEPS_M =
-    1 << 20; // places are multiples of a 2^-20th metre: both tiles of a border say the same
-constexpr double NORMAL_UNIT = 32767;
-
-void put_place(const double place[3], TileVertex *vertex) {
-    for (int i = 0; i < 3; i++) {
-        double rounded = std::round(place[i] * PLACE_STEPS_M) / PLACE_STEPS_M;
-        vertex->high[i] = (float)rounded;
-        vertex->low[i] = (float)(rounded - (double)vertex->high[i]);
-    }
-}
-
-double place_of(const TileVertex &vertex, int axis) {
-    return (double)vertex.high[axis] + vertex.low[axis];
-}
-
-// A vertex whose triangles have no area keeps the normal that it had.
-void put_normal(const float sum[3], int16_t normal[3]) {
-    double length = std::sqrt((double)sum[0] * sum[0] + (double)sum[1] * sum[1] + (double)sum[2] * sum[2]);
-    for (int i = 0; i < 3 && length > 0; i++) {
-        double part = NORMAL_UNIT * sum[i] / length;
-        normal[i] = (int16_t)(part < 0 ? part - 0.5 : part + 0.5);
-    }
-}
-
-// MAP_SPAN times as wide as the rectangle, which lies in its middle.
-uint16_t map_of(double value, double low, double high) {
-    double share = high > low ? (value - low) / (high - low) : 0;
-    return (uint16_t)std::lround(65535 * std::clamp(0.5 + (share - 0.5) / MAP_SPAN, 0.0, 1.0));
-}
-
-bool is_border(const scree_stream_header &header, const scree_vertex &vertex) {
+static bool is_border(const scree_stream_header &header, const scree_vertex &vertex) {
     return vertex.x == 0 || vertex.y == 0 || vertex.x == header.columns || vertex.y == header.rows;
 }
-
-} // namespace
 
 void PageVersions::mark(uint32_t first, uint32_t end, uint64_t version) {
     for (uint32_t page = first / page_items; page * page_items < end && page < pages.size(); page++)
@@ -61,6 +26,7 @@ TileMesh::TileMesh(Player taken, const MeshWorld &world) : player(std::move(take
     place_vertices();
     find_normals();
     find_origins();
+    list_borders();
     scree_player_seek_rung(player.get(), 0);
     scree_player_look(player.get(), &shown);
     scree_player_dirty_all(player.get());
@@ -107,16 +73,19 @@ void TileMesh::place_vertices() {
         highest_m = std::max(highest_m, vertex.height_m);
         vertex.map[0] = map_of(tile.west + from.x * tile.spacing_x, world.bounds[0], world.bounds[2]);
         vertex.map[1] = map_of(tile.south + from.y * tile.spacing_y, world.bounds[1], world.bounds[3]);
-        vertex.increment = is_border(tile, from) ? 0 : (int16_t)shown.increments[i];
+        vertex.increment = (int16_t)shown.increments[i];
+        vertex.slot = SLOT_OWN;
     }
 }
 
-// Those inside morph from the vertex that they were split from, as it was before their increment.
+// Those inside morph from the vertex that they were split from, as it was before their increment; border vertices have
+// got theirs.
 void TileMesh::find_origins() {
     const progressive *all = player_playback(player.get())->progressive;
     for (uint32_t i = 0; i < shown.vertex_count; i++) {
         TileVertex &vertex = vertices[i];
         uint32_t from = i;
+        if (is_border(header(), shown.vertices[i])) continue;
         if (vertex.increment > 0)
             while (shown.increments[from] >= shown.increments[i]) from = all->splits[from - all->base_vertices].parent;
         const TileVertex &origin = vertices[from];
@@ -146,9 +115,9 @@ void TileMesh::find_normals() {
                 sums[shown.indices[slot + (uint32_t)i]].normal[axis] += (float)normal[axis];
     }
     scree_frame up = frame();
+    const float upward[3] = {(float)up.axes[2][0], (float)up.axes[2][1], (float)up.axes[2][2]};
     for (uint32_t i = 0; i < shown.vertex_count; i++) {
-        for (int axis = 0; axis < 3; axis++)
-            vertices[i].normal[axis] = (int16_t)std::lround(NORMAL_UNIT * up.axes[2][axis]);
+        put_normal(upward, vertices[i].normal); // where there is no area, as at a pole
         put_normal(sums[i].normal, vertices[i].normal);
         if (!is_border(header(), shown.vertices[i])) continue;
         border_places[i] = (uint32_t)border_sums.size();
@@ -168,11 +137,6 @@ void TileMesh::positions(std::vector<float> *place) const {
         }
 }
 
-bool TileMesh::is_on_data(const TileVertex &vertex) {
-    auto is_within = [](uint16_t map) { return std::fabs(map / 65535.0 - 0.5) * MAP_SPAN < 0.5 - 1e-4; };
-    return is_within(vertex.map[0]) && is_within(vertex.map[1]);
-}
-
 void TileMesh::base_heights(const scree_terrain &terrain, float *lowest, float *highest) const {
     scree_select_heights(&terrain, &header(), 0, shown.vertices, lowest, highest);
 }
@@ -181,7 +145,8 @@ size_t TileMesh::bytes() const {
     return player_memory(player.get())->used_bytes +
            2 * (vertices.capacity() * sizeof(TileVertex) + indices.capacity() * sizeof(uint32_t) +
                 seam_vertices.capacity() * sizeof(TileVertex) + seam_indices.capacity() * sizeof(uint32_t)) +
-           border_places.capacity() * sizeof(uint32_t) + 2 * border_sums.capacity() * sizeof(Sum);
+           border_places.capacity() * sizeof(uint32_t) +
+           border_sums.capacity() * (2 * sizeof(Sum) + sizeof(BorderVertex));
 }
 
 // ---- the scale ----
@@ -207,98 +172,4 @@ void TileMesh::copy_changed_slots() {
         std::copy(shown.indices + range.first, shown.indices + range.end, indices.begin() + range.first);
         index_pages.mark(range.first, range.end, version);
     }
-}
-
-// ---- the neighbours ----
-
-const scree_stitch_tile &TileMesh::stitch_tile() {
-    if (!own_is_current) scree_stitch_look(player.get(), &own, nullptr);
-    own_is_current = true;
-    return own;
-}
-
-// How far a common line's vertices of this tile lie behind those of another, in steps along it.
-int64_t TileMesh::steps_behind(const TileMesh &other, scree_side side) const {
-    const scree_stream_header &here = header(), &there = other.header();
-    bool is_north_south = side == SCREE_EAST || side == SCREE_WEST;
-    return std::llround(is_north_south ? (here.south - there.south) / here.spacing_y
-                                       : (here.west - there.west) / here.spacing_x);
-}
-
-// Both sides list their vertices along the common line from its low end: a walk along both finds those in common.
-void TileMesh::share_normals(const std::vector<Neighbour> &neighbours) {
-    const scree_stitch_tile &tile = stitch_tile();
-    std::vector<Sum> now = border_sums;
-    for (const Neighbour &beside : neighbours) {
-        const scree_border &border = tile.borders[beside.side];
-        const scree_border &other = beside.mesh->stitch_tile().borders[(beside.side + 2) % SCREE_SIDES];
-        int64_t behind = steps_behind(*beside.mesh, beside.side);
-        bool is_north_south = beside.side == SCREE_EAST || beside.side == SCREE_WEST;
-        auto along = [is_north_south](const scree_vertex &at) { return is_north_south ? at.y : at.x; };
-        for (uint32_t i = 0, k = 0; i < border.vertex_count && k < other.vertex_count;) {
-            int64_t mine = behind + along(shown.vertices[border.vertices[i]]);
-            int64_t its = along(beside.mesh->shown.vertices[other.vertices[k]]);
-            if (mine == its) {
-                const Sum &sum = beside.mesh->border_sums[beside.mesh->border_places[other.vertices[k]]];
-                Sum &both = now[border_places[border.vertices[i]]];
-                for (int j = 0; j < 3; j++) both.normal[j] += sum.normal[j];
-            }
-            i += mine <= its;
-            k += its <= mine;
-        }
-    }
-    for (const scree_border &border : tile.borders)
-        for (uint32_t i = 0; i < border.vertex_count; i++) {
-            uint32_t at = border.vertices[i];
-            const Sum &sum = now[border_places[at]];
-            Sum &before = both_sums[border_places[at]];
-            if (std::equal(sum.normal, sum.normal + 3, before.normal)) continue;
-            before = sum;
-            put_normal(sum.normal, vertices[at].normal);
-            std::copy_n(vertices[at].normal, 3, vertices[at].origin_normal);
-            vertex_pages.mark(at, at + 1, ++version);
-        }
-}
-
-bool TileMesh::stitch(const std::vector<Neighbour> &neighbours, std::string *error) {
-    const scree_stitch_tile &tile = stitch_tile();
-    version++;
-    for (uint32_t triangle : replaced)
-        if (triangle < shown.triangle_count) {
-            std::copy_n(shown.indices + 3 * (size_t)triangle, 3, indices.begin() + 3 * (std::ptrdiff_t)triangle);
-            index_pages.mark(3 * triangle, 3 * triangle + 3, version);
-        }
-    std::vector<scree_stitch_neighbour> beside;
-    for (const Neighbour &neighbour : neighbours) beside.push_back({&neighbour.mesh->stitch_tile(), neighbour.side});
-    scree_stitch_size room = scree_stitch_bound(&tile, beside.data(), (uint32_t)beside.size());
-    std::vector<scree_vertex> further(room.vertices);
-    std::vector<scree_stitch_source> sources(room.vertices);
-    std::vector<uint32_t> fans(3 * (size_t)room.triangles);
-    replaced.resize(room.replaced);
-    scree_stitch stitch = {room, replaced.data(), further.data(), sources.data(), fans.data(), {}};
-    scree_error failure = {};
-    bool is_stitched = scree_stitch_borders(&tile, beside.data(), (uint32_t)beside.size(), shown.vertex_count, &stitch,
-                                            &failure) == SCREE_OK;
-    if (!is_stitched) *error = failure.text;
-    replaced.resize(stitch.count.replaced);
-    for (uint32_t triangle : replaced) {
-        std::fill_n(indices.begin() + 3 * (std::ptrdiff_t)triangle, 3, 0u);
-        index_pages.mark(3 * triangle, 3 * triangle + 3, version);
-    }
-    seam_version++;
-    seam_vertices.clear();
-    seam_indices.resize(3 * (size_t)stitch.count.triangles);
-    for (size_t i = 0; i < seam_indices.size(); i++) {
-        size_t before = i < 3 ? 0 : i - i % 3 - 3, known = before; // a fan's triangle shares two with the one before
-        while (known < i && fans[known] != fans[i]) known++;
-        seam_indices[i] = known < i ? seam_indices[known] : (uint32_t)seam_vertices.size();
-        if (known < i) continue;
-        if (fans[i] < shown.vertex_count) {
-            seam_vertices.push_back(vertices[fans[i]]);
-        } else {
-            const scree_stitch_source &source = sources[fans[i] - shown.vertex_count];
-            seam_vertices.push_back(neighbours[source.neighbour].mesh->vertices[source.vertex]);
-        }
-    }
-    return is_stitched;
 }

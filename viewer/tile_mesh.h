@@ -1,31 +1,14 @@
 // A tile as it is drawn: its vertices in the world, the triangles of the scale shown, and the seam to its neighbours.
 // Plain arrays with a note of what has changed; no graphics.
-//
-// A vertex is the same bytes in every tile that has it, so that tiles meet exactly on the screen: its place in the
-// world is kept as two floats a coordinate, and drawn less the eye's (high parts, low parts), which leaves no error
-// that shows even on the ground of a globe.
 #ifndef SCREE_VIEWER_TILE_MESH_H
 #define SCREE_VIEWER_TILE_MESH_H
 
 #include "viewer/tile_file_io.h"
+#include "viewer/tile_vertex.h"
 
 #include <scree/select.h>
 #include <scree/stitch.h>
 #include <vector>
-
-constexpr double MAP_SPAN = 2; // beyond the data there are places, too
-
-struct TileVertex {
-    float high[3], low[3]; // their sum is the place in the world
-    float delta[3];        // from there to where it morphs from
-    float height_m, origin_height_m;
-    uint16_t map[2]; // 0 .. 65535 from the south-west, over MAP_SPAN times the rectangle of the data
-    int16_t normal[3];
-    int16_t increment; // scree_morph_weight; 0 on the border, which does not morph
-    int16_t origin_normal[3];
-    int16_t spare;
-};
-static_assert(sizeof(TileVertex) == 64, "what the shaders are told");
 
 // What is the same for all tiles.
 struct MeshWorld {
@@ -71,7 +54,8 @@ class TileMesh {
         bool operator==(const Neighbour &other) const { return mesh == other.mesh && side == other.side; }
     };
 
-    // Gives the vertices of the border the normals that both sides have at their scales.
+    // Gives the vertices of the border the normals that they have with the triangles of both sides, at the finest
+    // meshes that are there: to be called when neighbours are others, not when scales change.
     void share_normals(const std::vector<Neighbour> &neighbours);
     // Makes the seam; no neighbours: none. False, and one line in `error`, when the tiles are not of one build.
     bool stitch(const std::vector<Neighbour> &neighbours, std::string *error);
@@ -79,26 +63,40 @@ class TileMesh {
     // What to send. `indices` has the shown triangles first, those that the seam replaces as empty ones.
     std::vector<TileVertex> vertices;
     std::vector<uint32_t> indices;
-    std::vector<TileVertex> seam_vertices;
+    std::vector<TileVertex> seam_vertices; // those of neighbour k have slot SLOT_NEIGHBOURS + k
     std::vector<uint32_t> seam_indices;
+    float levels[SLOT_COUNT] = {};                    // to be set for every frame
     PageVersions vertex_pages{64}, index_pages{1024}; // of 4 KiB
     uint64_t version = 1, seam_version = 1;           // of the latest change
 
-    scree_frame frame() const;                        // of the tile, in the world's metres
-    void positions(std::vector<float> *place) const;  // of the shown vertices, in that frame
-    static bool is_on_data(const TileVertex &vertex); // within their rectangle
+    scree_frame frame() const;                       // of the tile, in the world's metres
+    void positions(std::vector<float> *place) const; // of the shown vertices, in that frame
     // Bounds of the tile and all below it, from its base mesh (scree_select_heights).
     void base_heights(const scree_terrain &terrain, float *lowest, float *highest) const;
     double box[2][3]; // of all vertices, in that frame
     float lowest_m, highest_m;
 
   private:
+    struct Sum {
+        float normal[3]; // areas times normals
+    };
+    struct BorderVertex {
+        int32_t place; // lattice steps along the side, from the west or south
+        uint32_t vertex;
+        uint32_t from, to; // vertices of the edge that it rises from; itself on the base mesh
+        float share;       // of the way between them
+    };
     void place_vertices();
-    void find_origins();
     void find_normals();
+    void find_origins();
+    void list_borders();
+    void find_border_origins(std::vector<BorderVertex> *border);
+    void turn_border_origins();
     void copy_changed_slots();
     const scree_stitch_tile &stitch_tile();
     int64_t steps_behind(const TileMesh &other, scree_side side) const;
+    void put_seam(const std::vector<uint32_t> &fans, const std::vector<scree_stitch_source> &sources,
+                  const std::vector<Neighbour> &neighbours);
 
     Player player;
     MeshWorld world;
@@ -107,13 +105,10 @@ class TileMesh {
     uint32_t shown_rung = 0;
     scree_stitch_tile own = {};
     bool own_is_current = false;
-    std::vector<uint32_t> replaced; // triangles
-    struct Sum {
-        float normal[3];
-    };
-    // Of the vertices of the border, areas times normals of this tile's own triangles; and where they stand in it.
-    std::vector<Sum> border_sums, both_sums;
-    std::vector<uint32_t> border_places; // of every vertex
+    std::vector<uint32_t> replaced;               // triangles
+    std::vector<BorderVertex> sides[SCREE_SIDES]; // all that are there, in order
+    std::vector<Sum> border_sums, both_sums;      // of the vertices of the border: of this tile, and of both
+    std::vector<uint32_t> border_places;          // of every vertex: where it is among those
 };
 
 #endif
