@@ -15,10 +15,8 @@ struct tile_geometry tile_place_geometry(const struct tile_plan *plan, struct ti
                                      .rows = window.rows,
                                      .cell_span = (int32_t)(lattice_tile_span(lattice, id.zoom) / TILE_CELLS),
                                      .height_unit_m = plan->ladder->height_unit_m};
-    double south_m, north_m, top = (double)window.y + window.rows;
-    lattice_steps_m(lattice, (double)window.y, &south_m, &geometry.north_m);
-    lattice_steps_m(lattice, top, &north_m, &geometry.north_m);
-    geometry.east_m = fmax(south_m, north_m);
+    double top = (double)window.y + window.rows, equator = -lattice->south / lattice->spacing_y;
+    lattice_steps_m(lattice, fmin(fmax(equator, (double)window.y), top), &geometry.east_m, &geometry.north_m);
     for (int32_t row = 0; row * geometry.cell_span < window.rows + geometry.cell_span; row++)
         drops->east_m[row] =
             (float)lattice_parallel_drop_m(lattice, (double)window.y + (double)row * geometry.cell_span);
