@@ -17,5 +17,6 @@ int command_verify(int argc, char **argv);
 int command_compare(int argc, char **argv);
 int command_extract(int argc, char **argv);
 int command_remesh(int argc, char **argv);
+int command_filter(int argc, char **argv);
 
 #endif

@@ -19,6 +19,7 @@ static const struct command {
     {"info", command_info, "what is in a terrain or a tile"},
     {"extract", command_extract, "a terrain or tile as a mesh file at a scale you choose"},
     {"remesh", command_remesh, "a raster as the mesh that an observer needs, from a quadtree"},
+    {"filter", command_filter, "a raster smoothed where nobody looks, for fewer triangles"},
     {"compare", command_compare, "the methods of the literature side by side: error, triangles, time, bytes"},
     {NULL, NULL, NULL},
 };

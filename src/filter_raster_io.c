@@ -1,0 +1,171 @@
+/* Rasters in and out for `scree filter`: see the header. */
+#include "src/filter_raster_io.h"
+
+#include "lod/post_gaps.h"
+#include "src/file_io.h"
+#include "src/raster_parts_io.h"
+
+#include <cpl_vsi.h>
+#include <gdal.h>
+#include <ogr_srs_api.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ROWS_AT_ONCE    256
+#define MOST_SIDE       (1 << 30)
+#define BYTES_A_MB      1000000
+#define NODATA          (-32768.0)
+#define MEMORY_FILE     "/vsimem/scree-filtered.tif"
+#define LOWEST_HEIGHT_M (-1e29) /* what is lower is FILTER_NO_HEIGHT_M */
+
+static enum scree_status lay_out(struct scree_memory *memory, const char *name, const struct raster_summary *summary,
+                                 struct filter_raster *raster, struct lattice *lattice, struct scree_error *error) {
+    const double bytes = (double)FILTER_POST_BYTES * (double)summary->columns * (double)summary->rows;
+    if (summary->columns > MOST_SIDE || summary->rows > MOST_SIDE ||
+        (memory->limit_bytes > 0 && bytes > (double)memory->limit_bytes))
+        return scree_fail(error, SCREE_E_LIMIT,
+                          "%s: to filter %lld x %lld posts takes %.0f MB of memory; allow that with --memory, or crop "
+                          "with --te",
+                          name, (long long)summary->columns, (long long)summary->rows, bytes / BYTES_A_MB + 1);
+    enum scree_status status =
+        lattice_local(summary->columns, summary->rows, summary->bounds[0], summary->bounds[1], summary->spacing_x,
+                      summary->spacing_y, summary->metres_per_unit, lattice, error);
+    if (status != SCREE_OK) return status;
+    raster->columns = (int32_t)summary->columns;
+    raster->rows = (int32_t)summary->rows;
+    raster->west = lattice->west;
+    raster->south = lattice->south;
+    raster->spacing_x = lattice->spacing_x;
+    raster->spacing_y = lattice->spacing_y;
+    const size_t length = strlen(summary->crs_wkt) + 1;
+    raster->crs_wkt = scree_allocate(memory, length, 1, "the name of a CRS", error);
+    if (raster->crs_wkt == NULL) return SCREE_E_MEMORY;
+    memcpy(raster->crs_wkt, summary->crs_wkt, length);
+    return SCREE_OK;
+}
+
+static enum scree_status read_heights(struct scree_memory *memory, const struct raster *from,
+                                      struct filter_raster *raster, struct scree_error *error) {
+    struct raster_reader *reader = NULL;
+    enum scree_status status = raster_reader_new(from, &reader, error);
+    if (status != SCREE_OK) return status;
+    const int32_t columns = raster->columns, rows = raster->rows;
+    raster->heights_m = scree_allocate(memory, (size_t)columns * (size_t)rows, sizeof *raster->heights_m,
+                                       "the raster's heights", error);
+    if (raster->heights_m == NULL) status = SCREE_E_MEMORY;
+    for (int32_t y = 0; y < rows && status == SCREE_OK; y += ROWS_AT_ONCE) {
+        const int32_t here = rows - y < ROWS_AT_ONCE ? rows - y : ROWS_AT_ONCE;
+        status = raster_read(reader, 0, y, columns, here, raster->heights_m + (int64_t)y * columns, columns, error);
+    }
+    raster_reader_free(reader);
+    return status;
+}
+
+static enum scree_status find_outside(struct scree_memory *memory, const char *name, struct filter_raster *raster,
+                                      struct scree_error *error) {
+    const size_t count = (size_t)raster->columns * (size_t)raster->rows;
+    size_t post = 0;
+    while (post < count && raster->heights_m[post] > LOWEST_HEIGHT_M) post++;
+    if (post == count) return SCREE_OK;
+    raster->is_outside = scree_allocate(memory, count, 1, "posts without data", error);
+    if (raster->is_outside == NULL) return SCREE_E_MEMORY;
+    for (; post < count; post++) raster->is_outside[post] = raster->heights_m[post] <= LOWEST_HEIGHT_M;
+    return post_gaps_fill(raster->heights_m, raster->is_outside, raster->columns, raster->rows)
+               ? SCREE_OK
+               : scree_fail(error, SCREE_E_CORRUPT, "%s: holds no height, all of its pixels are nodata", name);
+}
+
+enum scree_status filter_raster_read(struct scree_memory *memory, const struct raster_options *options,
+                                     struct filter_raster *raster, struct scree_error *error) {
+    struct raster *from = NULL;
+    struct lattice lattice;
+    *raster = (struct filter_raster){.heights_m = NULL};
+    enum scree_status status = raster_open(options, &from, error);
+    const char *name = options->inputs[0];
+    if (status == SCREE_OK) status = lay_out(memory, name, raster_summary(from), raster, &lattice, error);
+    if (status == SCREE_OK) status = raster_place(from, &lattice, error);
+    if (status == SCREE_OK) status = read_heights(memory, from, raster, error);
+    if (status == SCREE_OK) status = find_outside(memory, name, raster, error);
+    raster_free(from);
+    return status;
+}
+
+void filter_raster_free(struct scree_memory *memory, struct filter_raster *raster) {
+    scree_release(memory, raster->is_outside);
+    scree_release(memory, raster->heights_m);
+    scree_release(memory, raster->crs_wkt);
+    *raster = (struct filter_raster){.heights_m = NULL};
+}
+
+/* ---- writing ---- */
+
+static bool describe(const struct filter_raster *raster, GDALDatasetH dataset) {
+    const double north = raster->south + (raster->rows - 1) * raster->spacing_y;
+    double transform[6] = {raster->west - raster->spacing_x / 2,
+                           raster->spacing_x,
+                           0,
+                           north + raster->spacing_y / 2,
+                           0,
+                           -raster->spacing_y};
+    GDALRasterBandH band = GDALGetRasterBand(dataset, 1);
+    bool fine = GDALSetGeoTransform(dataset, transform) == CE_None && GDALSetRasterUnitType(band, "metre") == CE_None;
+    if (raster->is_outside != NULL) fine = fine && GDALSetRasterNoDataValue(band, NODATA) == CE_None;
+    if (raster->crs_wkt[0] == '\0') return fine;
+    OGRSpatialReferenceH srs = OSRNewSpatialReference(NULL);
+    OSRSetAxisMappingStrategy(srs, OAMS_TRADITIONAL_GIS_ORDER);
+    fine =
+        fine && OSRSetFromUserInput(srs, raster->crs_wkt) == OGRERR_NONE && GDALSetSpatialRef(dataset, srs) == CE_None;
+    OSRDestroySpatialReference(srs);
+    return fine;
+}
+
+/* 1, or -1 where the CRS counts depths, which the reader has turned into heights. */
+static float sign_of_heights(const struct filter_raster *raster) {
+    PJ_CONTEXT *proj = raster_proj_new();
+    double metres = 1;
+    const bool is_depth = proj != NULL && raster->crs_wkt[0] != '\0' &&
+                          raster_vertical_metres(proj, raster->crs_wkt, &metres) && metres < 0;
+    proj_context_destroy(proj);
+    return is_depth ? -1 : 1;
+}
+
+static bool fill_dataset(const struct filter_raster *raster, const float *heights_m, GDALDatasetH dataset) {
+    const int32_t columns = raster->columns;
+    const float sign = sign_of_heights(raster);
+    GDALRasterBandH band = GDALGetRasterBand(dataset, 1);
+    float *row_m = malloc((size_t)columns * sizeof *row_m);
+    bool fine = row_m != NULL;
+    for (int32_t row = 0; row < raster->rows && fine; row++) {
+        const size_t first = (size_t)(raster->rows - 1 - row) * (size_t)columns;
+        for (int32_t x = 0; x < columns; x++) {
+            const bool is_outside = raster->is_outside != NULL && raster->is_outside[first + (size_t)x];
+            row_m[x] = is_outside ? (float)NODATA : sign * heights_m[first + (size_t)x];
+        }
+        fine = GDALRasterIO(band, GF_Write, 0, row, columns, 1, row_m, columns, 1, GDT_Float32, 0, 0) == CE_None;
+    }
+    free(row_m);
+    return fine;
+}
+
+enum scree_status filter_raster_write(const struct filter_raster *raster, const float *heights_m, const char *path,
+                                      struct scree_error *error) {
+    const char *const options[] = {"TILED=YES", "COMPRESS=DEFLATE", "PREDICTOR=3", "BIGTIFF=IF_SAFER", NULL};
+    struct raster_trap trap;
+    raster_trap_set(&trap);
+    GDALDatasetH dataset = GDALCreate(GDALGetDriverByName("GTiff"), MEMORY_FILE, raster->columns, raster->rows, 1,
+                                      GDT_Float32, (CSLConstList)options);
+    bool fine = dataset != NULL && describe(raster, dataset) && fill_dataset(raster, heights_m, dataset);
+    if (dataset != NULL) GDALClose(dataset);
+    fine = fine && trap.text[0] == '\0';
+    vsi_l_offset size_bytes = 0;
+    const unsigned char *bytes = VSIGetMemFileBuffer(MEMORY_FILE, &size_bytes, FALSE);
+    enum scree_status status = SCREE_OK;
+    if (fine && bytes != NULL)
+        status = file_replace(path, bytes, (size_t)size_bytes, error);
+    else
+        status = raster_trap_fail(&trap, path, error);
+    VSIUnlink(MEMORY_FILE);
+    raster_trap_clear();
+    return status;
+}

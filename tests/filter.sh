@@ -1,0 +1,125 @@
+#!/bin/sh
+# scree filter: a raster comes out with its pixels and CRS, smoothed, the same every time; what cannot be done is one
+# line on standard error, exit code 1 or 2, and no file.
+set -u
+scree=$TOP_BUILDDIR/scree
+scratch=$(mktemp -d) || exit 99
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch" || exit 99
+failed=0
+fail() {
+    echo "$1"
+    cat out err
+    failed=1
+}
+# filters ARGUMENT...: it does; what it says is in out.
+filters() {
+    "$scree" filter "$@" >out 2>err || fail "filter $*: does not"
+    [ ! -s err ] || fail "filter $*: nothing was expected on stderr"
+}
+says() { grep -q -- "$1" out || fail "'$1' was expected on stdout"; }
+# refuses CODE WORDS ARGUMENT...: it fails with that code and says that in one line; there is no file.
+refuses() {
+    wanted=$1 words=$2
+    shift 2
+    rm -f to.tif
+    "$scree" filter "$@" >out 2>err
+    got=$?
+    [ $got -eq "$wanted" ] || fail "filter $*: exit code $got, not $wanted"
+    [ "$(wc -l <err)" -eq 1 ] || fail "filter $*: one line was expected on stderr"
+    grep -q -- "$words" err || fail "filter $*: '$words' was expected on stderr"
+    [ ! -e to.tif ] || fail "filter $*: there is a file"
+}
+
+"$TOP_BUILDDIR/tests/fractal_dem" -o dem.tif --size 600 --rows 301 --type Float32 --epsg 32611 --spacing-m 30 >out 2>err ||
+    fail 'no DEM to work on'
+cat >grid.asc <<EOG
+ncols 5
+nrows 4
+xllcorner 10
+yllcorner 45
+cellsize 0.5
+NODATA_value -9999
+1 2 3 4 -9999
+2 3 4 5 -9999
+3 4 5 6 7
+4 5 6 7 8
+EOG
+
+# The same pixels and CRS; smaller steps and deltas stay closer; the same bytes again.
+filters dem.tif -o to.tif
+says '^to.tif: 600 x 301 posts; heights changed by RMS'
+says 'of the posts keep detail'
+filters dem.tif -o again.tif
+cmp to.tif again.tif || failed=1
+# rms: what the last filter changed
+rms() { sed -n 's/.* changed by RMS \([^ ]*\) m.*/\1/p' out; }
+# closer: the last filter changed less than $before
+closer() {
+    awk "BEGIN { exit !($(rms) < $before) }" || fail "$1: RMS $(rms) is not less than $before"
+}
+filters dem.tif -o other.tif
+before=$(rms)
+filters dem.tif -o other.tif --delta 1
+closer '--delta 1'
+filters dem.tif -o other.tif --spline-steps 1
+closer '--spline-steps 1'
+filters dem.tif -o other.tif --thresholds hill=0,0,0,0,0,0,0,0,0
+closer '--thresholds'
+filters dem.tif -o other.tif --variant 1
+cmp -s to.tif other.tif && fail '--variant 1: the same file'
+filters dem.tif -o other.tif --delta 0 --least 0 --thresholds hill=0,0,0,0,0,0,0,0,0
+says 'RMS 0 m, at most 0 m'
+filters -q dem.tif -o other.tif
+[ ! -s out ] || fail '-q: nothing was expected on stdout'
+"$scree" build to.tif -o built -q --profile local --products terrain --error 1e5 2>err || fail 'it cannot be built'
+
+# Posts without data stay so, unless they are given a height.
+all='--delta 0 --least 0 --thresholds hill=0,0,0,0,0,0,0,0,0 --fill-distance -1'
+filters grid.asc -o grid.tif $all
+says 'RMS 0 m'
+filters grid.tif -o grid2.tif $all
+cmp grid.tif grid2.tif || fail 'a raster with a void is not what it was'
+filters grid.asc -o flat.tif $all --nodata-height 30
+cmp -s grid.tif flat.tif && fail '--nodata-height changes nothing'
+filters dem.tif -o part.tif --te 400500 3800500 404000 3804000
+says '117 x 117 posts'
+
+# Bad command lines.
+refuses 2 'which DEM' -o to.tif
+refuses 2 '-o names' dem.tif
+refuses 2 'no option --frob' dem.tif -o to.tif --frob
+refuses 2 'missing behind --delta' dem.tif -o to.tif --delta
+for value in 0 10 -1 x '' 1.5; do refuses 2 '1 to 9' dem.tif -o to.tif --spline-steps "$value"; done
+for value in -1 nan inf x ''; do
+    refuses 2 'metres from 0' dem.tif -o to.tif --delta "$value"
+    refuses 2 'metres from 0' dem.tif -o to.tif --least "$value"
+done
+for value in 0 3 x; do refuses 2 '1 or 2' dem.tif -o to.tif --variant "$value"; done
+for value in hill hill= hill=1 hill=0,0,0,0,0,0,0,0 hill=0,0,0,0,0,0,0,0,0,0 hill=0,0,0,0,0,0,0,0,-1 \
+    hill=0,0,0,0,0,0,0,0,nan mountain=0,0,0,0,0,0,0,0,0 =0,0,0,0,0,0,0,0,0 hil=0,0,0,0,0,0,0,0,0; do
+    refuses 2 'CLASS=T0' dem.tif -o to.tif --thresholds "$value"
+done
+refuses 2 'megabytes' dem.tif -o to.tif --memory 0
+refuses 2 '--config' dem.tif -o to.tif --config KEY
+refuses 2 'extent' dem.tif -o to.tif --te 1 1 1 1
+
+# What is no raster, or none that can be taken as it is.
+refuses 1 'nothing.tif' nothing.tif -o to.tif
+echo 'not a raster' >text.tif
+refuses 1 'text.tif' text.tif -o to.tif
+head -c 5000 dem.tif >cut.tif
+refuses 1 'cut.tif' cut.tif -o to.tif
+sed '7,$s/[0-9][0-9]*/9999/g;s/-*9999/-9999/g' grid.asc >void.asc
+refuses 1 'void.asc' void.asc -o to.tif
+printf 'ncols 1\nnrows 1\nxllcorner 10\nyllcorner 45\ncellsize 0.01\n7\n' >one.asc
+refuses 1 '2 x 2 posts' one.asc -o to.tif
+refuses 1 'outside of --te' grid.asc -o to.tif --te 50 5 51 6
+refuses 1 'no band 9' grid.asc -o to.tif -b 9
+refuses 1 'allow that with --memory' dem.tif -o to.tif --memory 4
+
+# Places that cannot be written to.
+refuses 1 'nowhere/to.tif' dem.tif -o nowhere/to.tif
+mkdir folder.tif
+refuses 1 'folder.tif' dem.tif -o folder.tif
+exit $failed
