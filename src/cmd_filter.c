@@ -3,6 +3,7 @@
 #include "lod/spline_filter.h"
 #include "src/command.h"
 #include "src/filter_raster_io.h"
+#include "src/landuse_io.h"
 #include "src/raster_arguments.h"
 
 #include <cpl_conv.h>
@@ -20,8 +21,14 @@ static const char help[] =
     "Filters a raster so that it needs fewer triangles: the context-sensitive filter of Goebbels and\n"
     "Pohle-Froehlich (\"Context-sensitive filtering of terrain data based on multi scale analysis\"). Heights come "
     "from\n"
-    "a coarse spline; those that lie far from it are kept, filtered by thresholds on Haar wavelets.\n\n"
+    "a coarse spline; those that lie far from it, and what land use says is looked at, keep their detail, filtered by\n"
+    "thresholds on Haar wavelets.\n\n"
     "  -o OUT.tif           the file to write: the raster's pixels and CRS, Float32, in metres\n"
+    "  --landuse FILE       polygons of land use, any vector source that OGR reads: posts near shores, railways,\n"
+    "                       bridges and roads that meet bridges keep detail, waters are levelled to their mean\n"
+    "  --rules FILE         what attributes mean, a rule a line, the first that fits counts: USE ATTRIBUTE=VALUE;\n"
+    "                       uses are water, shore, railway, bridge, road and forest, and * is any value. Default:\n"
+    "                       the attribute class has the name of the use\n"
     "  --spline-steps N     halve the grid so often for the spline, 1 to 9, default 3\n"
     "  --delta M            keep detail where the spline is farther away than this, default 4\n"
     "  --least M            differences up to this cannot be seen, and stay with the spline; default 0.3\n"
@@ -29,7 +36,10 @@ static const char help[] =
     "                       goes (the paper's eq. 4); 1: whatever stays below its threshold goes (eq. 3)\n"
     "  --thresholds CLASS=T0,T1,...,T8   nine thresholds in metres, from coarse (512 posts) to fine (2 posts); may\n"
     "                       be given once a class. Classes and their defaults (the paper's Table 1):\n"
-    "                       hill, far from the spline: 0,0.1,0.2,0.2,0.3,0.4,0.5,0.5,0.5\n"
+    "                       near, no farther than 4 posts from what has to be kept: 0,.1,.1,.2,.2,.2,.3,.3,.4\n"
+    "                       railway, on an embankment: 0,.1,.1,.1,.1,.1,.1,.1,.1\n"
+    "                       hill, farther than delta from the spline: 0,.1,.2,.2,.3,.4,.5,.5,.5\n"
+    "                       forest, the same under trees: 0,.1,.2,.2,.3,20,20,20,20\n"
     "  --memory MB          refuse rasters that need more, default 4000; a post takes 24 bytes\n"
     "  -q                   say nothing but errors\n"
     "  --config KEY VALUE   a GDAL configuration option\n" RASTER_ARGUMENTS_HELP
@@ -44,7 +54,7 @@ struct arguments {
     struct raster_options raster;
     struct context_options filter;
     const char **inputs;
-    const char *output;
+    const char *output, *landuse, *rules;
     int memory_mb;
     bool quiet;
 };
@@ -85,6 +95,8 @@ static const char *take_valued(const char *name, const char *value, struct argum
     struct context_options *filter = &arguments->filter;
     int number;
     if (strcmp(name, "-o") == 0) return arguments->output = value, NULL;
+    if (strcmp(name, "--landuse") == 0) return arguments->landuse = value, NULL;
+    if (strcmp(name, "--rules") == 0) return arguments->rules = value, NULL;
     if (strcmp(name, "--spline-steps") == 0)
         return argument_integer(value, 1, SPLINE_MAX_STEPS, &filter->spline_steps)
                    ? NULL
@@ -139,6 +151,7 @@ static int parse(int argc, char **argv, struct arguments *arguments) {
     }
     if (arguments->raster.input_count == 0) return usage("which DEM? Name one raster or several", "");
     if (arguments->output == NULL) return usage("-o names the GeoTIFF to write", "");
+    if (arguments->rules != NULL && arguments->landuse == NULL) return usage("--rules goes with --landuse", "");
     arguments->raster.inputs = arguments->inputs;
     return EXIT_DONE;
 }
@@ -149,19 +162,45 @@ struct job {
     struct scree_memory memory;
     struct filter_raster raster;
     struct context_posts posts;
+    struct landuse_posts landuse;
     struct context_counts counts;
     float *filtered_m;
 };
 
 static enum scree_status read_all(const struct arguments *arguments, struct job *job, struct scree_error *error) {
     enum scree_status status = filter_raster_read(&job->memory, &arguments->raster, &job->raster, error);
-    if (status != SCREE_OK) return status;
     const struct filter_raster *raster = &job->raster;
-    job->posts =
-        (struct context_posts){.heights_m = raster->heights_m, .columns = raster->columns, .rows = raster->rows};
+    if (status == SCREE_OK && arguments->landuse != NULL)
+        status = landuse_read(&job->memory, arguments->landuse, arguments->rules, raster, &job->landuse, error);
+    if (status != SCREE_OK) return status;
+    job->posts = (struct context_posts){.heights_m = raster->heights_m,
+                                        .columns = raster->columns,
+                                        .rows = raster->rows,
+                                        .uses = job->landuse.uses,
+                                        .waters = job->landuse.waters,
+                                        .water_count = job->landuse.water_count};
     job->filtered_m = scree_allocate(&job->memory, (size_t)raster->columns * (size_t)raster->rows,
                                      sizeof *job->filtered_m, "the filtered heights", error);
     return job->filtered_m != NULL ? SCREE_OK : SCREE_E_MEMORY;
+}
+
+static void tell_landuse(const char *path, const struct landuse_posts *landuse) {
+    printf("%s: ", path);
+    for (int use = 0; use < LANDUSE_COUNT; use++)
+        printf("%s%u %s", use > 0 ? ", " : "", (unsigned)landuse->features[use], landuse_name((enum landuse)use));
+    printf("; %u roads meet a bridge\n", (unsigned)landuse->ramps);
+    if (landuse->outside > 0) printf("%s: %u lie outside of the raster\n", path, (unsigned)landuse->outside);
+    if (landuse->repaired > 0) printf("%s: %u are invalid and were repaired\n", path, (unsigned)landuse->repaired);
+    if (landuse->empty > 0) printf("%s: %u have no usable geometry\n", path, (unsigned)landuse->empty);
+}
+
+static void tell_classes(const struct context_counts *counts, size_t count) {
+    printf("of the posts");
+    for (int class = 0; class < CONTEXT_REST; class ++)
+        printf("%s %.3g %% are %s", class > 0 ? "," : "", 100 * (double)counts->posts[class] / (double)count,
+               class_names[class]);
+    printf("; %.3g %% keep detail, %.3g %% are levelled\n", 100 * (double)counts->detailed / (double)count,
+           100 * (double)counts->levelled / (double)count);
 }
 
 static void tell(const struct arguments *arguments, const struct job *job) {
@@ -174,7 +213,8 @@ static void tell(const struct arguments *arguments, const struct job *job) {
     }
     printf("%s: %d x %d posts; heights changed by RMS %.4g m, at most %.4g m\n", arguments->output,
            (int)job->posts.columns, (int)job->posts.rows, sqrt(sum_m2 / (double)count), max_m);
-    printf("%.3g %% of the posts keep detail\n", 100 * (double)job->counts.detailed / (double)count);
+    if (arguments->landuse != NULL) tell_landuse(arguments->landuse, &job->landuse);
+    tell_classes(&job->counts, count);
 }
 
 static enum scree_status filter(const struct arguments *arguments, struct job *job, struct scree_error *error) {
@@ -191,6 +231,7 @@ static int run(const struct arguments *arguments) {
     struct job job = {.memory = {.limit_bytes = (size_t)arguments->memory_mb * BYTES_A_MB}};
     enum scree_status status = filter(arguments, &job, &error);
     scree_release(&job.memory, job.filtered_m);
+    landuse_free(&job.memory, &job.landuse);
     filter_raster_free(&job.memory, &job.raster);
     if (status == SCREE_OK) return EXIT_DONE;
     fprintf(stderr, "scree filter: %s\n", error.text);
