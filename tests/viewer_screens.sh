@@ -102,7 +102,7 @@ largest_step() { # OPTION...
 smooth=$(largest_step)
 popping=$(largest_step --no-morph)
 echo "from a rung to the next in steps: at most $smooth with geomorphing, $popping without"
-if [ "$popping" -le 0 ] || [ $((smooth * 5)) -ge $((popping * 4)) ]; then
+if [ "$popping" -le 0 ] || [ $((smooth * 3)) -ge "$popping" ]; then
     fail "geomorphing does not make smaller steps"
 fi
 

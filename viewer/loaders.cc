@@ -3,7 +3,7 @@
 LoadedTile load_tile(const LoadRequest &request, const MeshWorld &world) {
     TileFile file = tile_file_read(request.path, request.rungs);
     LoadedTile tile = {request.tile, request.rungs, nullptr, file.bytes_read, file.is_broken, std::move(file.error)};
-    if (file.player != nullptr) tile.mesh = std::make_unique<TileMesh>(std::move(file.player), world);
+    if (file.player != nullptr) tile.mesh = std::make_unique<TileMesh>(std::move(file.player), file.is_broken, world);
     return tile;
 }
 

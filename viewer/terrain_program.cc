@@ -29,6 +29,7 @@ IN vec4 scree_normal, scree_origin_normal;
 uniform vec3 scree_eye_high, scree_eye_low;
 uniform mat4 scree_view, scree_projection;
 uniform float scree_levels[64]; // SLOT_COUNT
+uniform float scree_octave; // increments
 uniform bool scree_is_globe;
 uniform vec3 scree_sun; // to the east, north and up
 OUT float height, light;
@@ -41,7 +42,11 @@ void main() {
     gl_Position = scree_projection * (scree_view * vec4(place, 1.0));
     height = mix(scree_heights.y, scree_heights.x, weight);
     map = 2.0 * scree_map - 0.5; // MAP_SPAN
-    vec3 normal = normalize(mix(scree_origin_normal.xyz, scree_normal.xyz, weight));
+    // it turns until the end of its octave: TileMesh::normal_at
+    float from = max(scree_normal.w - 1.0, 0.0);
+    float to = ceil(max(scree_normal.w, 1.0) / scree_octave - 1e-4) * scree_octave;
+    float turned = clamp((level - from) / (to - from), 0.0, 1.0);
+    vec3 normal = normalize(mix(scree_origin_normal.xyz, scree_normal.xyz, turned));
     vec3 up = vec3(0.0, 0.0, 1.0), east = vec3(1.0, 0.0, 0.0);
     if (scree_is_globe) {
         up = normalize(scree_high);

@@ -8,7 +8,6 @@
 
 namespace {
 
-constexpr uint32_t RUNGS_AHEAD = 4;         // an octave: what has to be decoded again is then little
 constexpr uint64_t BYTES_A_TRIANGLE = 256;  // of memory: 225 to 253 were measured
 constexpr uint64_t BYTES_A_BASE = 2u << 20; // of a tile of which nothing is known yet
 constexpr size_t BYTES_A_FRAME = 1u << 20;  // to the graphics card, for tiles that have come
@@ -377,8 +376,12 @@ void TerrainSet::request(const TerrainSettings &settings) {
     };
     for (uint32_t tile : cut->awaited()) ask(tile, UINT32_MAX, true);
     for (uint32_t tile : denied) is_final[tile] = 1;
-    for (uint32_t i = 0; i < selection.wanted_count; i++)
-        ask(wanted[i].tile, wanted[i].end_rung <= 1 ? 1 : wanted[i].end_rung + RUNGS_AHEAD, false);
+    for (uint32_t i = 0; i < selection.wanted_count; i++) {
+        const scree_stream_header *header = tiles[wanted[i].tile].header;
+        uint32_t octave = header == nullptr ? 1 : (uint32_t)held[wanted[i].tile].mesh->octave_increments();
+        uint32_t end = wanted[i].end_rung <= 1 ? 0 : (wanted[i].end_rung - 1 + octave - 1) / octave * octave;
+        ask(wanted[i].tile, end + 1, false);
+    }
     asked = requests.size();
     if (loaders != nullptr) return loaders->want(std::move(requests));
     for (const LoadRequest &one : requests) take(load_tile(one, world));

@@ -45,10 +45,23 @@ void TileMesh::find_border_origins(std::vector<BorderVertex> *border) {
     }
 }
 
+// From coarse to fine: each is told by vertices that were there before.
 void TileMesh::turn_border_origins() {
+    std::vector<const BorderVertex *> order;
     for (const std::vector<BorderVertex> &side : sides)
         for (const BorderVertex &at : side)
-            put_edge_origin(vertices[at.from], vertices[at.to], at.share, &vertices[at.vertex]);
+            if (at.from != at.to) order.push_back(&at);
+    std::sort(order.begin(), order.end(),
+              [](const BorderVertex *a, const BorderVertex *b) { return a->vertex < b->vertex; });
+    for (const BorderVertex *at : order) {
+        TileVertex &vertex = vertices[at->vertex];
+        float from[3], to[3], between[3];
+        normal_at(at->from, vertex.increment - 1, from);
+        normal_at(at->to, vertex.increment - 1, to);
+        for (int axis = 0; axis < 3; axis++) between[axis] = from[axis] + at->share * (to[axis] - from[axis]);
+        put_normal(between, vertex.origin_normal);
+        put_edge_origin(vertices[at->from], vertices[at->to], at->share, &vertex);
+    }
 }
 
 // ---- light ----
@@ -61,19 +74,24 @@ int64_t TileMesh::steps_behind(const TileMesh &other, scree_side side) const {
                                        : (here.west - there.west) / here.spacing_x);
 }
 
-// Both sides list their vertices along the common line from its low end: a walk along both finds those in common.
+// Both sides list their vertices along the common line from its low end: a walk along both finds those in common. What
+// a zoom ends with is what the next begins with.
 void TileMesh::share_normals(const std::vector<Neighbour> &neighbours) {
     std::vector<Sum> now = border_sums;
     for (const Neighbour &beside : neighbours) {
         const std::vector<BorderVertex> &mine = sides[beside.side];
         const std::vector<BorderVertex> &its = beside.mesh->sides[(beside.side + 2) % SCREE_SIDES];
         int64_t behind = steps_behind(*beside.mesh, beside.side);
+        int zooms = beside.mesh->header().zoom - header().zoom;
         for (size_t i = 0, k = 0; i < mine.size() && k < its.size();) {
             int64_t place = behind + mine[i].place;
             if (place == its[k].place) {
                 const Sum &sum = beside.mesh->border_sums[beside.mesh->border_places[its[k].vertex]];
-                for (int axis = 0; axis < 3; axis++)
-                    now[border_places[mine[i].vertex]].normal[axis] += sum.normal[axis];
+                Sum &both = now[border_places[mine[i].vertex]];
+                for (int axis = 0; axis < 3; axis++) {
+                    both.start[axis] += zooms < 0 ? sum.end[axis] : sum.start[axis];
+                    both.end[axis] += zooms > 0 ? sum.start[axis] : sum.end[axis];
+                }
             }
             bool is_behind = place <= its[k].place, is_ahead = place >= its[k].place;
             i += is_behind;
@@ -84,8 +102,10 @@ void TileMesh::share_normals(const std::vector<Neighbour> &neighbours) {
     for (const std::vector<BorderVertex> &side : sides)
         for (const BorderVertex &at : side) {
             const Sum &sum = now[border_places[at.vertex]], &before = both_sums[border_places[at.vertex]];
-            if (std::equal(sum.normal, sum.normal + 3, before.normal)) continue;
-            put_normal(sum.normal, vertices[at.vertex].normal);
+            if (std::equal(sum.start, sum.start + 3, before.start) && std::equal(sum.end, sum.end + 3, before.end))
+                continue;
+            put_normal(sum.end, vertices[at.vertex].normal);
+            if (vertices[at.vertex].increment == 0) put_normal(sum.start, vertices[at.vertex].origin_normal);
             is_other = true;
         }
     both_sums = std::move(now);

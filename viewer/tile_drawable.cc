@@ -163,6 +163,7 @@ void TileDrawable::set_uniforms(osg::State &state, osg::GLExtensions *gl) const 
     gl->glUniformMatrix4fv(at(UNIFORM_VIEW), 1, GL_FALSE, turned.ptr());
     gl->glUniformMatrix4fv(at(UNIFORM_PROJECTION), 1, GL_FALSE, projection.ptr());
     gl->glUniform1fv(at(UNIFORM_LEVELS), SLOT_COUNT, tile->levels);
+    gl->glUniform1f(at(UNIFORM_OCTAVE), tile->octave_increments());
     gl->glUniform4fv(at(UNIFORM_COLOUR), 1, colour.ptr());
 }
 

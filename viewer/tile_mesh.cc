@@ -16,21 +16,28 @@ void PageVersions::mark(uint32_t first, uint32_t end, uint64_t version) {
         pages[page] = version;
 }
 
-TileMesh::TileMesh(Player taken, const MeshWorld &world) : player(std::move(taken)), world(world) {
-    scree_player_seek_rung(player.get(), rungs_ready() - 1);
-    scree_player_look(player.get(), &shown);
+TileMesh::TileMesh(Player taken, bool is_final, const MeshWorld &world) : player(std::move(taken)), world(world) {
+    const scree_stream_header &tile = header();
+    uint32_t last = tile.rung_count - 1, ready = scree_player_rungs_ready(player.get()) - 1;
+    while (octave < last && tile.rungs[octave].rung - tile.rungs[0].rung < OCTAVE_RUNGS) octave++;
+    finest = is_final || ready == last ? ready : ready - ready % octave;
+    look_at(finest);
     vertices.assign(shown.vertex_count, TileVertex{});
     vertex_pages.resize(vertices.size());
     indices.assign(3 * (size_t)shown.triangle_count, 0);
     index_pages.resize(indices.size());
     place_vertices();
     find_normals();
-    find_origins();
     list_borders();
-    scree_player_seek_rung(player.get(), 0);
-    scree_player_look(player.get(), &shown);
+    find_origins();
+    look_at(0);
     scree_player_dirty_all(player.get());
     copy_changed_slots();
+}
+
+void TileMesh::look_at(uint32_t rung) {
+    scree_player_seek_rung(player.get(), rung);
+    scree_player_look(player.get(), &shown);
 }
 
 // ---- the vertices ----
@@ -85,22 +92,26 @@ void TileMesh::find_origins() {
     for (uint32_t i = 0; i < shown.vertex_count; i++) {
         TileVertex &vertex = vertices[i];
         uint32_t from = i;
-        if (is_border(header(), shown.vertices[i])) continue;
-        if (vertex.increment > 0)
-            while (shown.increments[from] >= shown.increments[i]) from = all->splits[from - all->base_vertices].parent;
-        const TileVertex &origin = vertices[from];
-        for (int axis = 0; axis < 3; axis++) {
-            vertex.delta[axis] = (float)(place_of(origin, axis) - place_of(vertex, axis));
-            vertex.origin_normal[axis] = origin.normal[axis];
-        }
-        vertex.origin_height_m = origin.height_m;
+        if (vertex.increment == 0 || vertex.slot != SLOT_OWN) continue;
+        while (shown.increments[from] >= shown.increments[i]) from = all->splits[from - all->base_vertices].parent;
+        float normal[3];
+        normal_at(from, vertex.increment - 1, normal);
+        put_normal(normal, vertex.origin_normal);
+        put_edge_origin(vertices[from], vertices[from], 0, &vertex);
     }
 }
 
-// Of the finest mesh that is there, whatever is shown: so light does not change with the scale.
-void TileMesh::find_normals() {
-    std::vector<Sum> sums(shown.vertex_count, Sum{});
-    border_places.assign(shown.vertex_count, 0);
+// ---- light ----
+
+// The end of the octave in which an increment's vertices appear: 4 rungs of the ladder, a whole tile but at the finest
+// zoom. The base's turn into those of the first.
+uint32_t TileMesh::octave_end(uint32_t increment) const {
+    uint32_t end = increment == 0 ? octave : (increment + octave - 1) / octave * octave;
+    return std::min(end, finest);
+}
+
+// Adds areas times normals of what is shown to its corners.
+void TileMesh::add_normals(std::vector<std::array<float, 3>> *sums) const {
     for (uint32_t slot = 0; slot < 3 * shown.triangle_count; slot += 3) {
         const TileVertex *corner[3];
         for (int i = 0; i < 3; i++) corner[i] = &vertices[shown.indices[slot + (uint32_t)i]];
@@ -110,20 +121,50 @@ void TileMesh::find_normals() {
             v[axis] = place_of(*corner[2], axis) - place_of(*corner[0], axis);
         }
         double normal[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-        for (int i = 0; i < 3; i++)
-            for (int axis = 0; axis < 3; axis++)
-                sums[shown.indices[slot + (uint32_t)i]].normal[axis] += (float)normal[axis];
+        for (uint32_t i = 0; i < 3; i++)
+            for (size_t axis = 0; axis < 3; axis++) (*sums)[shown.indices[slot + i]][axis] += (float)normal[axis];
+    }
+}
+
+// A vertex turns from the normal that it has when it appears to that of the mesh at the end of its octave. The base
+// begins with the normals of its own mesh, with which the zoom above ends: so nothing that loads or changes places
+// shows in the light.
+void TileMesh::find_normals() {
+    uint32_t count = shown.vertex_count;
+    std::vector<Sum> sums(count, Sum{});
+    for (uint32_t end = 0;; end = std::min(end + octave, finest)) {
+        look_at(end);
+        std::vector<std::array<float, 3>> now(shown.vertex_count, std::array<float, 3>{});
+        add_normals(&now);
+        for (uint32_t i = 0; i < shown.vertex_count; i++) {
+            if (end == 0) std::copy_n(now[i].data(), 3, sums[i].start);
+            if (octave_end(shown.increments[i]) == end) std::copy_n(now[i].data(), 3, sums[i].end);
+        }
+        if (end == finest) break;
     }
     scree_frame up = frame();
     const float upward[3] = {(float)up.axes[2][0], (float)up.axes[2][1], (float)up.axes[2][2]};
-    for (uint32_t i = 0; i < shown.vertex_count; i++) {
-        put_normal(upward, vertices[i].normal); // where there is no area, as at a pole
-        put_normal(sums[i].normal, vertices[i].normal);
+    border_places.assign(count, 0);
+    for (uint32_t i = 0; i < count; i++) {
+        TileVertex &vertex = vertices[i];
+        for (int16_t *normal : {vertex.normal, vertex.origin_normal}) put_normal(upward, normal); // as at a pole
+        put_normal(sums[i].end, vertex.normal);
+        put_normal(sums[i].start, vertex.origin_normal);
         if (!is_border(header(), shown.vertices[i])) continue;
         border_places[i] = (uint32_t)border_sums.size();
         border_sums.push_back(sums[i]);
     }
     both_sums = border_sums;
+}
+
+// As the shader has it.
+void TileMesh::normal_at(uint32_t vertex, double level, float normal[3]) const {
+    const TileVertex &at = vertices[vertex];
+    double from = std::max(at.increment - 1, 0);
+    double to = std::ceil(std::max<double>(at.increment, 1) / octave) * octave;
+    double weight = std::clamp((level - from) / (to - from), 0.0, 1.0);
+    for (int axis = 0; axis < 3; axis++)
+        normal[axis] = (float)(at.origin_normal[axis] + weight * (at.normal[axis] - at.origin_normal[axis]));
 }
 
 void TileMesh::positions(std::vector<float> *place) const {
@@ -152,7 +193,7 @@ size_t TileMesh::bytes() const {
 // ---- the scale ----
 
 bool TileMesh::seek(double level, uint64_t *splits) {
-    shown_level = std::clamp(level, 0.0, (double)(rungs_ready() - 1));
+    shown_level = std::clamp(level, 0.0, (double)finest);
     uint32_t wanted = (uint32_t)std::ceil(shown_level), before = shown.vertex_count;
     if (wanted == shown_rung) return false;
     shown_rung = wanted;

@@ -6,6 +6,7 @@
 #include "viewer/tile_file_io.h"
 #include "viewer/tile_vertex.h"
 
+#include <array>
 #include <scree/select.h>
 #include <scree/stitch.h>
 #include <vector>
@@ -30,13 +31,17 @@ class PageVersions {
     std::vector<uint64_t> pages;
 };
 
+constexpr int32_t OCTAVE_RUNGS = 4; // of the ladder
+
 class TileMesh {
   public:
-    // The player has a mesh at least, and no normals. Any thread.
-    TileMesh(Player player, const MeshWorld &world);
+    // The player has a mesh at least, and no normals. `is_final`: nothing more will come. Any thread.
+    TileMesh(Player player, bool is_final, const MeshWorld &world);
 
     const scree_stream_header &header() const { return *scree_player_header(player.get()); }
-    uint32_t rungs_ready() const { return scree_player_rungs_ready(player.get()); }
+    // What can be shown: whole octaves of the ladder, because light goes by them (or all that there will be).
+    uint32_t rungs_ready() const { return finest + 1; }
+    float octave_increments() const { return (float)octave; }
     size_t bytes() const; // of memory, twice what is sent to the graphics card included
 
     // Shows a level; between two rungs the finer one's triangles, on their way. True: other triangles than before.
@@ -78,7 +83,7 @@ class TileMesh {
 
   private:
     struct Sum {
-        float normal[3]; // areas times normals
+        float start[3], end[3]; // areas times normals, of the base mesh and at the end of the vertex's octave
     };
     struct BorderVertex {
         int32_t place; // lattice steps along the side, from the west or south
@@ -86,8 +91,12 @@ class TileMesh {
         uint32_t from, to; // vertices of the edge that it rises from; itself on the base mesh
         float share;       // of the way between them
     };
+    void look_at(uint32_t rung);
     void place_vertices();
+    uint32_t octave_end(uint32_t increment) const;
+    void add_normals(std::vector<std::array<float, 3>> *sums) const;
     void find_normals();
+    void normal_at(uint32_t vertex, double level, float normal[3]) const;
     void find_origins();
     void list_borders();
     void find_border_origins(std::vector<BorderVertex> *border);
@@ -101,6 +110,8 @@ class TileMesh {
     Player player;
     MeshWorld world;
     scree_arrays shown = {};
+    uint32_t octave = 1; // increments
+    uint32_t finest = 0; // rung that can be shown
     double shown_level = 0;
     uint32_t shown_rung = 0;
     scree_stitch_tile own = {};

@@ -33,12 +33,9 @@ bool is_on_data(const TileVertex &vertex) {
 }
 
 void put_edge_origin(const TileVertex &from, const TileVertex &to, double share, TileVertex *vertex) {
-    float normal[3];
     for (int axis = 0; axis < 3; axis++) {
         double begin = place_of(from, axis), way = place_of(to, axis) - begin;
         vertex->delta[axis] = (float)(begin + share * way - place_of(*vertex, axis));
-        normal[axis] = (float)(from.normal[axis] + share * (to.normal[axis] - from.normal[axis]));
     }
-    put_normal(normal, vertex->origin_normal);
     vertex->origin_height_m = (float)(from.height_m + share * ((double)to.height_m - from.height_m));
 }

@@ -14,9 +14,9 @@ struct TileVertex {
     float height_m, origin_height_m;
     uint16_t map[2]; // 0 .. 65535 from the south-west, over MAP_SPAN times the rectangle of the data
     int16_t normal[3];
-    int16_t increment; // scree_morph_weight, by the level of
-    int16_t origin_normal[3];
-    int16_t slot; // this one of the tile's levels
+    int16_t increment;        // scree_morph_weight, by the level of
+    int16_t origin_normal[3]; // when it appears; it turns more slowly than it moves
+    int16_t slot;             // this one of the tile's levels
 };
 static_assert(sizeof(TileVertex) == 64, "what the shaders are told");
 
@@ -39,7 +39,7 @@ void put_normal(const float sum[3], int16_t normal[3]);
 uint16_t map_of(double value, double low, double high);
 bool is_on_data(const TileVertex &vertex); // within their rectangle
 
-// Where a border vertex morphs from: a share of the way from one vertex to another.
+// Where a vertex morphs from: a share of the way from one vertex to another.
 void put_edge_origin(const TileVertex &from, const TileVertex &to, double share, TileVertex *vertex);
 
 #endif
