@@ -1,5 +1,7 @@
 #include "src/raster_arguments.h"
 
+#include "src/cloud_arguments.h"
+
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
@@ -21,8 +23,7 @@ bool argument_integer(const char *text, long low, long high, int *number) {
     return true;
 }
 
-/* Is it the option of this name, written with one dash or two? */
-static bool is_option(const char *argument, const char *name) {
+bool argument_is(const char *argument, const char *name) {
     if (argument[0] != '-') return false;
     argument += argument[1] == '-' ? 2 : 1;
     return strcmp(argument, name) == 0;
@@ -63,14 +64,14 @@ enum argument_result raster_argument_take(int argc, char **argv, int *at, struct
     const char *option = argv[*at];
     enum argument_result result = ARGUMENT_TAKEN;
     size_t which = 0, known = sizeof with_value / sizeof *with_value;
-    if (is_option(option, "te")) return take_extent(argc, argv, at, options, error);
-    if (is_option(option, "any-height")) {
+    if (argument_is(option, "te")) return take_extent(argc, argv, at, options, error);
+    if (argument_is(option, "any-height")) {
         options->any_height = true;
         ++*at;
         return ARGUMENT_TAKEN;
     }
-    while (which < known && !is_option(option, with_value[which])) which++;
-    if (which == known) return ARGUMENT_OTHER;
+    while (which < known && !argument_is(option, with_value[which])) which++;
+    if (which == known) return cloud_argument_take(argc, argv, at, &options->cloud, error);
     if (*at + 1 >= argc) return wrong(error, option, "a value");
     const char *value = argv[*at + 1];
     switch (which) {

@@ -1,15 +1,12 @@
-/* The options of a command line that say how rasters are read: the same for every command that reads them. Pure. */
+/* The options of a command line that say how rasters and point clouds are read: the same for every command that reads
+ * them. Pure. */
 #ifndef SCREE_RASTER_ARGUMENTS_H
 #define SCREE_RASTER_ARGUMENTS_H
 
+#include "src/arguments.h"
+#include "src/cloud_arguments.h"
 #include "src/raster_io.h"
 #include <scree/error.h>
-
-enum argument_result {
-    ARGUMENT_OTHER, /* not one of these: the caller's */
-    ARGUMENT_TAKEN, /* it, and the values behind it */
-    ARGUMENT_WRONG  /* `error` says why */
-};
 
 /* Looks at argv[*at]; what was taken is stepped over, so that *at is the next argument. */
 enum argument_result raster_argument_take(int argc, char **argv, int *at, struct raster_options *options,
@@ -24,12 +21,6 @@ enum argument_result raster_argument_take(int argc, char **argv, int *at, struct
     "  --nodata-height M    height where there are no data, default 0\n"                                         \
     "  --fill-distance N    interpolate voids up to so many posts wide, default 100; -1: never\n"                \
     "  --any-height         let heights beyond 20 km pass\n"                                                     \
-    "  --te W S E N         crop to this extent, degrees or CRS units\n"
-
-/* The whole text as a finite number, or false. */
-bool argument_number(const char *text, double *number);
-
-/* The whole text as a whole number within low..high, or false. */
-bool argument_integer(const char *text, long low, long high, int *number);
+    "  --te W S E N         crop to this extent, degrees or CRS units\n" CLOUD_ARGUMENTS_HELP
 
 #endif

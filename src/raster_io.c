@@ -1,4 +1,5 @@
 /* Elevation from GDAL: what the rest of the program calls to open, describe and place rasters (src/raster_io.h). */
+#include "src/cloud_read_io.h"
 #include "src/raster_parts_io.h"
 
 #include <cpl_conv.h>
@@ -238,7 +239,8 @@ static enum scree_status find_attribution(struct raster *raster, struct scree_er
     raster_trap_set(&trap);
     bool is_done = true;
     for (int i = 0; i < raster->input_count && is_done; i++) {
-        GDALDatasetH dataset = GDALOpenEx(raster->inputs[i].name, GDAL_OF_RASTER | GDAL_OF_READONLY, NULL, NULL, NULL);
+        GDALDatasetH dataset =
+            GDALOpenEx(raster->inputs[i].dataset, GDAL_OF_RASTER | GDAL_OF_READONLY, NULL, NULL, NULL);
         for (size_t k = 0; k < sizeof keys / sizeof *keys && dataset != NULL && is_done; k++) {
             const char *text = GDALGetMetadataItem(dataset, keys[k], NULL);
             if (text != NULL && text[0] != '\0') is_done = add_line(&raster->summary.attribution, text);
@@ -327,21 +329,47 @@ static enum scree_status summarize_local(struct raster *raster, PJ_CONTEXT *proj
     return summary->crs_wkt != NULL ? SCREE_OK : scree_fail(error, SCREE_E_MEMORY, "no memory for a CRS");
 }
 
+/* Which inputs are clouds; the options for them need some. */
+static enum scree_status find_clouds(const struct raster_options *options, bool *is_cloud, struct scree_error *error) {
+    bool has_clouds = false;
+    for (int i = 0; i < options->input_count; i++) {
+        is_cloud[i] = cloud_is_cloud(options->inputs[i], options->cloud.named != NULL);
+        has_clouds = has_clouds || is_cloud[i];
+    }
+    if (options->cloud.named != NULL && !has_clouds)
+        return scree_fail(error, SCREE_E_ARGUMENT, "%s is for point clouds, and %s is none that can be read",
+                          options->cloud.named, options->inputs[0]);
+    return SCREE_OK;
+}
+
+/* One input is one raster, but all clouds are one together. */
+static enum scree_status open_input(struct raster *raster, const struct raster_options *options, int i,
+                                    const bool *is_cloud, struct scree_error *error) {
+    enum scree_status status = SCREE_OK;
+    if (is_cloud[i] && raster->cloud_path != NULL) return SCREE_OK;
+    if (is_cloud[i]) status = raster_clouds_make(raster, options, is_cloud, error);
+    if (status != SCREE_OK) return status;
+    const char *dataset = is_cloud[i] ? raster->cloud_path : options->inputs[i];
+    return raster_input_open(raster, options->inputs[i], dataset, &raster->inputs[raster->input_count++], error);
+}
+
 static enum scree_status open_inputs(struct raster *raster, const struct raster_options *options,
                                      struct scree_error *error) {
     raster->inputs = calloc((size_t)options->input_count, sizeof *raster->inputs);
     raster->groups = calloc((size_t)options->input_count, sizeof *raster->groups);
-    if (raster->inputs == NULL || raster->groups == NULL)
+    bool *is_cloud = calloc((size_t)options->input_count, sizeof *is_cloud);
+    if (raster->inputs == NULL || raster->groups == NULL || is_cloud == NULL) {
+        free(is_cloud);
         return scree_fail(error, SCREE_E_MEMORY, "no memory for %d inputs", options->input_count);
+    }
     /* GeoTIFF 1.0 files name their vertical CRS only when asked. */
     bool is_set = CPLGetConfigOption("GTIFF_REPORT_COMPD_CS", NULL) != NULL;
     if (!is_set) CPLSetThreadLocalConfigOption("GTIFF_REPORT_COMPD_CS", "YES");
-    enum scree_status status = SCREE_OK;
-    for (int i = 0; i < options->input_count && status == SCREE_OK; i++) {
-        raster->input_count++;
-        status = raster_input_open(raster, options->inputs[i], &raster->inputs[i], error);
-    }
+    enum scree_status status = find_clouds(options, is_cloud, error);
+    for (int i = 0; i < options->input_count && status == SCREE_OK; i++)
+        status = open_input(raster, options, i, is_cloud, error);
     if (!is_set) CPLSetThreadLocalConfigOption("GTIFF_REPORT_COMPD_CS", NULL);
+    free(is_cloud);
     return status;
 }
 
@@ -363,6 +391,7 @@ enum scree_status raster_open(const struct raster_options *options, struct raste
     raster->options.inputs = NULL; /* the caller's strings need not outlive this call */
     raster->options.resampling = NULL;
     raster->options.source_srs = NULL;
+    raster->options.cloud.named = NULL;
     raster->source_srs = copied(options->source_srs);
     status = check_options(raster, options, &overshoot, error);
     if (status == SCREE_OK) status = open_inputs(raster, options, error);
@@ -394,6 +423,8 @@ void raster_free(struct raster *raster) {
     for (int i = 0; i < raster->group_count; i++) raster_group_free(&raster->groups[i]);
     free(raster->groups);
     free(raster->inputs);
+    if (raster->cloud_path != NULL) VSIUnlink(raster->cloud_path);
+    free(raster->cloud_path);
     free(raster->source_srs);
     free(raster->summary.crs_wkt);
     free(raster->summary.datum);

@@ -1,15 +1,18 @@
 /* Elevation from GDAL: any number of rasters as one endless field of posts.
  *
  * raster_open looks at the inputs; raster_place binds them to a lattice (mosaic and warp are GDAL's virtual rasters);
- * each worker then reads posts through a reader of its own. Nothing ever holds more than a window of the raster. */
+ * each worker then reads posts through a reader of its own. Nothing ever holds more than a window of the raster.
+ * Inputs that are point clouds become one raster in memory first: they are one cloud together, which lies where the
+ * first of them stands among the inputs. */
 #ifndef SCREE_RASTER_IO_H
 #define SCREE_RASTER_IO_H
 
+#include "src/cloud_options.h"
 #include "src/lattice.h"
 #include <scree/error.h>
 
 struct raster_options {
-    const char *const *inputs; /* GDAL dataset names; later ones lie on top */
+    const char *const *inputs; /* GDAL dataset names, or point clouds; later ones lie on top */
     int input_count;
     enum profile profile;
     int band;               /* from 1; 0: the first */
@@ -23,6 +26,7 @@ struct raster_options {
     double extent[4];  /* west, south, east, north in degrees or CRS units: crop */
     int fill_distance; /* how far voids are interpolated from their borders, in posts; 0: the default of 100; negative:
                         * no void is filled */
+    struct cloud_options cloud; /* how inputs that are point clouds become posts */
 };
 
 struct raster_summary {

@@ -64,7 +64,7 @@ static GDALDatasetH opened(struct field_input *link) {
         field->open_count--;
     }
     link->opened =
-        GDALOpenEx(link->input->name, GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, NULL, NULL, NULL);
+        GDALOpenEx(link->input->dataset, GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, NULL, NULL, NULL);
     if (link->opened == NULL) return NULL;
     field->open_count++;
     if (GDALGetRasterXSize(link->opened) != link->input->columns ||

@@ -20,6 +20,7 @@
 
 struct raster_input {
     char *name;
+    char *dataset; /* what GDAL opens: the name, or the raster that a cloud became */
     int band;
     int columns, rows;
     bool has_geotransform;
@@ -77,6 +78,7 @@ struct raster {
     char *source_srs;
     GDALResampleAlg resampling;
     int fill_distance;
+    char *cloud_path;  /* the raster in memory that clouds became; NULL: none */
     bool has_enclosed; /* some group has voids */
     int input_count, group_count;
     struct raster_input *inputs;
@@ -101,8 +103,8 @@ enum scree_status raster_trap_fail(const struct raster_trap *trap, const char *w
 PJ_CONTEXT *raster_proj_new(void);
 
 /* raster_sources_io.c: inputs */
-enum scree_status raster_input_open(const struct raster *raster, const char *name, struct raster_input *input,
-                                    struct scree_error *error);
+enum scree_status raster_input_open(const struct raster *raster, const char *name, const char *dataset,
+                                    struct raster_input *input, struct scree_error *error);
 void raster_input_free(struct raster_input *input);
 /* Reads a window as metres, NaN where there is no height, rows as they are in the file. */
 CPLErr raster_input_read(const struct raster_input *input, GDALDatasetH dataset, int column, int row, int columns,
@@ -114,6 +116,10 @@ struct raster_range {
 /* The range of the heights in a window of pixels, read block by block. */
 enum scree_status raster_input_scan(struct raster *raster, const struct raster_input *input, const int window[4],
                                     struct raster_range *range, struct scree_error *error);
+
+/* raster_clouds_io.c: grids those of `inputs` that `is_cloud` marks, and makes raster->cloud_path. */
+enum scree_status raster_clouds_make(struct raster *raster, const struct raster_options *options, const bool *is_cloud,
+                                     struct scree_error *error);
 
 /* raster_units_io.c: the factor from a unit's name to metres; false when nobody knows it. */
 bool raster_unit_metres(PJ_CONTEXT *proj, const char *name, double *metres);

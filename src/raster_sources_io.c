@@ -16,6 +16,7 @@
 
 void raster_input_free(struct raster_input *input) {
     free(input->name);
+    free(input->dataset);
     free(input->crs_wkt);
     free(input->unit);
     *input = (struct raster_input){0};
@@ -153,18 +154,19 @@ static enum scree_status check_band(const struct raster *raster, GDALDatasetH da
     return SCREE_OK;
 }
 
-enum scree_status raster_input_open(const struct raster *raster, const char *name, struct raster_input *input,
-                                    struct scree_error *error) {
+enum scree_status raster_input_open(const struct raster *raster, const char *name, const char *dataset_name,
+                                    struct raster_input *input, struct scree_error *error) {
     enum scree_status status = SCREE_OK;
     struct raster_trap trap;
     raster_trap_set(&trap);
     GDALDatasetH dataset = NULL;
     input->name = strdup(name);
-    if (input->name == NULL) {
+    input->dataset = strdup(dataset_name);
+    if (input->name == NULL || input->dataset == NULL) {
         status = scree_fail(error, SCREE_E_MEMORY, "no memory for the name of an input");
         goto cleanup;
     }
-    dataset = GDALOpenEx(name, GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, NULL, NULL, NULL);
+    dataset = GDALOpenEx(dataset_name, GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, NULL, NULL, NULL);
     if (dataset == NULL) {
         status = raster_trap_fail(&trap, name, error);
         goto cleanup;
@@ -303,7 +305,7 @@ enum scree_status raster_input_scan(struct raster *raster, const struct raster_i
     float *heights_m = NULL;
     struct raster_trap trap;
     raster_trap_set(&trap);
-    GDALDatasetH dataset = GDALOpenEx(input->name, GDAL_OF_RASTER | GDAL_OF_READONLY, NULL, NULL, NULL);
+    GDALDatasetH dataset = GDALOpenEx(input->dataset, GDAL_OF_RASTER | GDAL_OF_READONLY, NULL, NULL, NULL);
     if (dataset == NULL) {
         status = raster_trap_fail(&trap, input->name, error);
         goto cleanup;
