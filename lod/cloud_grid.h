@@ -2,7 +2,7 @@
  *
  * The triangulation is exact, on positions rounded to 2^-24 of the longer side or finer; heights are interpolated
  * between the positions as they are. Of points in one place the lowest counts. The result depends on the points alone:
- * they are inserted along a Hilbert curve. Takes about 120 bytes a point at its peak, those of the cloud included. */
+ * they are inserted along a Hilbert curve. Takes about 130 bytes a point at its peak, those of the cloud included. */
 #ifndef SCREE_LOD_CLOUD_GRID_H
 #define SCREE_LOD_CLOUD_GRID_H
 

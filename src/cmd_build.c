@@ -19,7 +19,7 @@ static const char help[] =
     "Usage: scree build DEM... -o OUT [OPTION]...\n"
     "Makes OUT/terrain, a pyramid of quantized-mesh tiles, and OUT/stream, the same tiles at every scale as streams "
     "of\n"
-    "detail increments, from any rasters that GDAL reads; later ones lie on top.\n"
+    "detail increments, from any rasters that GDAL reads, or point clouds; later ones lie on top.\n"
     "The same input and options give the same bytes on any number of threads.\n\n"
     "  -o OUT               folder to write to; an earlier build in it is replaced\n"
     "  --profile NAME       geodetic (default; EPSG:4326, for Cesium) or local (the raster's own CRS and pixels)\n"

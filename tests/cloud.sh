@@ -53,6 +53,13 @@ refuses 1 'laszip -i' trees.laz
 { cat plane.csv && echo 5,6; } >ragged.csv
 refuses 1 'line 3602' ragged.csv --s_srs EPSG:32611 --grid 3
 
+# The page's commands, as they are written there; what is made already and other people's programs apart.
+mkdir page && cd page && ln -s "$TOP_BUILDDIR" build || exit 99
+sed -n 's/^    \(build\/.*\)/\1/p' "$TOP_SRCDIR/docs/clouds.md" >commands
+[ "$(grep -c 'scree build' commands)" -ge 3 ] || fail 'docs/clouds.md has fewer commands than it had'
+sh -e commands >printed 2>&1 || fail "docs/clouds.md: $(tail -n 3 printed)"
+cd ..
+
 if [ -r "$data/quebec_topography_ground_water.las" ]; then
     cloud=$data/quebec_topography_ground_water.las
     "$scree" build "$cloud" --class 2,9 --grid 2 -o real -q || fail 'no build of a real cloud'
