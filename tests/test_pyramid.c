@@ -1,7 +1,6 @@
 /* The main job end to end, on rasters made by code: what is built keeps the promises that verify looks at, at the edges
  * of the data, of the globe and of the raster; on any number of threads; and when it is stopped. */
 #include "src/build.h"
-#include "src/tile_place.h"
 #include "src/verify_against_io.h"
 #include "src/verify_terrain_io.h"
 #include "tests/fractal.h"
@@ -416,32 +415,12 @@ static void a_tile_that_cannot_be_written_stops_the_build(void) {
     }
 }
 
-/* The width of a step is that of a tile's widest row: of the equator where it is crossed, else of the nearest border.
- */
-static void a_tile_is_as_wide_as_its_widest_row(void) {
-    struct lattice lattice = lattice_geodetic(3);
-    struct ladder ladder = {.height_unit_m = 1};
-    const struct tile_plan plan = {.lattice = &lattice, .ladder = &ladder};
-    static const struct {
-        struct tile_id id;
-        double lat_deg;
-    } cases[] = {{{0, 0, 0}, 0}, {{0, 1, 0}, 0}, {{1, 3, 1}, 0}, {{1, 0, 0}, 0}, {{2, 5, 3}, 45}, {{2, 5, 0}, -45}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        struct tile_drops drops;
-        struct tile_geometry geometry = tile_place_geometry(&plan, cases[i].id, &drops);
-        double east_m, north_m;
-        lattice_steps_m(&lattice, (cases[i].lat_deg + 90) / lattice.spacing_y, &east_m, &north_m);
-        CU_ASSERT_DOUBLE_EQUAL(geometry.east_m, east_m, 1e-6 * east_m);
-    }
-}
-
 int suite_pyramid(void) {
     CU_pSuite suite = CU_add_suite("pyramid", NULL, NULL);
     if (suite == NULL) return 1;
     CU_ADD_TEST(suite, tolerances_halve_with_each_zoom);
     CU_ADD_TEST(suite, tolerances_that_grow_are_refused);
     CU_ADD_TEST(suite, height_steps_are_powers_of_two_that_fit);
-    CU_ADD_TEST(suite, a_tile_is_as_wide_as_its_widest_row);
     CU_ADD_TEST(suite, data_in_a_corner_of_a_tile);
     CU_ADD_TEST(suite, data_across_the_antimeridian);
     CU_ADD_TEST(suite, data_at_the_poles);

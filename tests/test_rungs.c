@@ -5,6 +5,7 @@
 #include "src/build.h"
 #include "src/stream_set_io.h"
 #include "src/tile_build.h"
+#include "src/tile_place.h"
 #include "tests/fractal.h"
 #include "tests/raster_maker.h"
 
@@ -450,9 +451,29 @@ static void lack_of_memory_leaves_nothing_behind(void) {
     remove_folder(out);
 }
 
+/* The width of a step is that of a tile's widest row: of the equator where it is crossed, else of the nearest border.
+ */
+static void a_tile_is_as_wide_as_its_widest_row(void) {
+    struct lattice lattice = lattice_geodetic(3);
+    struct ladder ladder = {.height_unit_m = 1};
+    const struct tile_plan plan = {.lattice = &lattice, .ladder = &ladder};
+    static const struct {
+        struct tile_id id;
+        double lat_deg;
+    } cases[] = {{{0, 0, 0}, 0}, {{0, 1, 0}, 0}, {{1, 3, 1}, 0}, {{1, 0, 0}, 0}, {{2, 5, 3}, 45}, {{2, 5, 0}, -45}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct tile_drops drops;
+        struct tile_geometry geometry = tile_place_geometry(&plan, cases[i].id, &drops);
+        double east_m, north_m;
+        lattice_steps_m(&lattice, (cases[i].lat_deg + 90) / lattice.spacing_y, &east_m, &north_m);
+        CU_ASSERT_DOUBLE_EQUAL(geometry.east_m, east_m, 1e-6 * east_m);
+    }
+}
+
 int suite_rungs(void) {
     CU_pSuite suite = CU_add_suite("rungs", NULL, NULL);
     if (suite == NULL) return 1;
+    CU_ADD_TEST(suite, a_tile_is_as_wide_as_its_widest_row);
     CU_ADD_TEST(suite, rungs_lie_between_zooms);
     CU_ADD_TEST(suite, heights_are_fine_enough_for_the_finest_rung);
     CU_ADD_TEST(suite, a_tile_is_its_children_at_their_coarsest);
