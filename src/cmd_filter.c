@@ -2,8 +2,12 @@
 #include "lod/context_filter.h"
 #include "lod/spline_filter.h"
 #include "src/command.h"
+#include "src/file_io.h"
+#include "src/filter_picture.h"
 #include "src/filter_raster_io.h"
+#include "src/filter_report.h"
 #include "src/landuse_io.h"
+#include "src/png.h"
 #include "src/raster_arguments.h"
 
 #include <cpl_conv.h>
@@ -40,7 +44,13 @@ static const char help[] =
     "                       railway, on an embankment: 0,.1,.1,.1,.1,.1,.1,.1,.1\n"
     "                       hill, farther than delta from the spline: 0,.1,.2,.2,.3,.4,.5,.5,.5\n"
     "                       forest, the same under trees: 0,.1,.2,.2,.3,20,20,20,20\n"
-    "  --memory MB          refuse rasters that need more, default 4000; a post takes 24 bytes\n"
+    "  --report             print tables of triangles: squares of posts, split where they are not flat within 0.2, "
+    "0.1\n"
+    "                       and 0.05 m, unfiltered and filtered, with 1 to 6 spline steps and other deltas (the\n"
+    "                       paper's Tables 2 to 4); -o may be left out then. Takes some 40 times as long\n"
+    "  --difference PNG     a picture of what has changed: red where the raster was higher, blue where lower, the\n"
+    "                       darker the farther, up to delta\n"
+    "  --filter-memory MB   refuse rasters that need more, default 4000; a post takes 24 bytes\n"
     "  -q                   say nothing but errors\n"
     "  --config KEY VALUE   a GDAL configuration option\n" RASTER_ARGUMENTS_HELP
     "\nThe raster's own pixels are the posts. Posts outside of the data stay without, unless --nodata-height gives "
@@ -54,9 +64,9 @@ struct arguments {
     struct raster_options raster;
     struct context_options filter;
     const char **inputs;
-    const char *output, *landuse, *rules;
+    const char *output, *landuse, *rules, *difference;
     int memory_mb;
-    bool quiet;
+    bool reports, quiet;
 };
 
 static int usage(const char *what, const char *argument) {
@@ -96,6 +106,7 @@ static const char *take_valued(const char *name, const char *value, struct argum
     int number;
     if (strcmp(name, "-o") == 0) return arguments->output = value, NULL;
     if (strcmp(name, "--landuse") == 0) return arguments->landuse = value, NULL;
+    if (strcmp(name, "--difference") == 0) return arguments->difference = value, NULL;
     if (strcmp(name, "--rules") == 0) return arguments->rules = value, NULL;
     if (strcmp(name, "--spline-steps") == 0)
         return argument_integer(value, 1, SPLINE_MAX_STEPS, &filter->spline_steps)
@@ -112,9 +123,10 @@ static const char *take_valued(const char *name, const char *value, struct argum
     }
     if (strcmp(name, "--thresholds") == 0)
         return take_thresholds(value, filter) ? NULL : "--thresholds wants CLASS=T0,...,T8 of a class, not ";
-    if (strcmp(name, "--memory") == 0)
-        return argument_integer(value, 1, MOST_MEMORY_MB, &arguments->memory_mb) ? NULL
-                                                                                 : "--memory wants megabytes, not ";
+    if (strcmp(name, "--filter-memory") == 0)
+        return argument_integer(value, 1, MOST_MEMORY_MB, &arguments->memory_mb)
+                   ? NULL
+                   : "--filter-memory wants megabytes, not ";
     return "";
 }
 
@@ -122,6 +134,7 @@ static const char *take_valued(const char *name, const char *value, struct argum
 static int take(int argc, char **argv, int *at, struct arguments *arguments) {
     const char *name = argv[(*at)++], *value = *at < argc ? argv[*at] : NULL;
     if (strcmp(name, "-q") == 0) return arguments->quiet = true, EXIT_DONE;
+    if (strcmp(name, "--report") == 0) return arguments->reports = true, EXIT_DONE;
     if (name[0] != '-' || name[1] == '\0') {
         arguments->inputs[arguments->raster.input_count++] = name;
         return EXIT_DONE;
@@ -150,7 +163,8 @@ static int parse(int argc, char **argv, struct arguments *arguments) {
         if (code != EXIT_DONE) return code;
     }
     if (arguments->raster.input_count == 0) return usage("which DEM? Name one raster or several", "");
-    if (arguments->output == NULL) return usage("-o names the GeoTIFF to write", "");
+    if (arguments->output == NULL && arguments->difference == NULL && !arguments->reports)
+        return usage("-o names the GeoTIFF to write", "");
     if (arguments->rules != NULL && arguments->landuse == NULL) return usage("--rules goes with --landuse", "");
     arguments->raster.inputs = arguments->inputs;
     return EXIT_DONE;
@@ -211,18 +225,52 @@ static void tell(const struct arguments *arguments, const struct job *job) {
         max_m = fmax(max_m, away_m);
         sum_m2 += away_m * away_m;
     }
-    printf("%s: %d x %d posts; heights changed by RMS %.4g m, at most %.4g m\n", arguments->output,
-           (int)job->posts.columns, (int)job->posts.rows, sqrt(sum_m2 / (double)count), max_m);
+    if (arguments->output != NULL) printf("%s: ", arguments->output);
+    printf("%d x %d posts; heights changed by RMS %.4g m, at most %.4g m\n", (int)job->posts.columns,
+           (int)job->posts.rows, sqrt(sum_m2 / (double)count), max_m);
     if (arguments->landuse != NULL) tell_landuse(arguments->landuse, &job->landuse);
     tell_classes(&job->counts, count);
+}
+
+static enum scree_status draw(const struct arguments *arguments, struct job *job, struct scree_error *error) {
+    const struct filter_difference difference = {
+        job->posts.heights_m, job->filtered_m, job->raster.is_outside,
+        job->posts.columns,   job->posts.rows, arguments->filter.delta_m > 0 ? arguments->filter.delta_m : 1};
+    struct filter_picture picture;
+    unsigned char *bytes = NULL;
+    size_t size_bytes = 0;
+    enum scree_status status = filter_picture_new(&job->memory, &difference, &picture, error);
+    if (status == SCREE_OK)
+        status =
+            png_encode_new(&job->memory, picture.rgb, picture.width_px, picture.height_px, &bytes, &size_bytes, error);
+    if (status == SCREE_OK) status = file_replace(arguments->difference, bytes, size_bytes, error);
+    scree_release(&job->memory, bytes);
+    scree_release(&job->memory, picture.rgb);
+    return status;
+}
+
+/* Last, as the filtered heights are lost on the way. */
+static enum scree_status report(const struct arguments *arguments, struct job *job, struct scree_error *error) {
+    struct text text = {0};
+    size_t length_bytes;
+    enum scree_status status =
+        filter_report(&job->memory, &job->posts, &arguments->filter, job->filtered_m, &text, error);
+    char *tables = text_take(&text, &length_bytes);
+    if (status == SCREE_OK && tables == NULL) status = scree_fail(error, SCREE_E_MEMORY, "no memory for the tables");
+    if (status == SCREE_OK) fputs(tables, stdout);
+    free(tables);
+    return status;
 }
 
 static enum scree_status filter(const struct arguments *arguments, struct job *job, struct scree_error *error) {
     enum scree_status status = read_all(arguments, job, error);
     if (status == SCREE_OK)
         status = context_filter(&job->memory, &job->posts, &arguments->filter, job->filtered_m, &job->counts, error);
-    if (status == SCREE_OK) status = filter_raster_write(&job->raster, job->filtered_m, arguments->output, error);
+    if (status == SCREE_OK && arguments->output != NULL)
+        status = filter_raster_write(&job->raster, job->filtered_m, arguments->output, error);
+    if (status == SCREE_OK && arguments->difference != NULL) status = draw(arguments, job, error);
     if (status == SCREE_OK && !arguments->quiet) tell(arguments, job);
+    if (status == SCREE_OK && arguments->reports) status = report(arguments, job, error);
     return status;
 }
 

@@ -24,10 +24,11 @@ static enum scree_status lay_out(struct scree_memory *memory, const char *name, 
     const double bytes = (double)FILTER_POST_BYTES * (double)summary->columns * (double)summary->rows;
     if (summary->columns > MOST_SIDE || summary->rows > MOST_SIDE ||
         (memory->limit_bytes > 0 && bytes > (double)memory->limit_bytes))
-        return scree_fail(error, SCREE_E_LIMIT,
-                          "%s: to filter %lld x %lld posts takes %.0f MB of memory; allow that with --memory, or crop "
-                          "with --te",
-                          name, (long long)summary->columns, (long long)summary->rows, bytes / BYTES_A_MB + 1);
+        return scree_fail(
+            error, SCREE_E_LIMIT,
+            "%s: to filter %lld x %lld posts takes %.0f MB of memory; allow that with --filter-memory, or crop "
+            "with --te",
+            name, (long long)summary->columns, (long long)summary->rows, bytes / BYTES_A_MB + 1);
     enum scree_status status =
         lattice_local(summary->columns, summary->rows, summary->bounds[0], summary->bounds[1], summary->spacing_x,
                       summary->spacing_y, summary->metres_per_unit, lattice, error);

@@ -144,6 +144,22 @@ refuses 1 'holds no rule' dem.tif -o to.tif --landuse use.json --rules rules.txt
 refuses 1 'nothing.txt' dem.tif -o to.tif --landuse use.json --rules nothing.txt
 refuses 2 'goes with --landuse' dem.tif -o to.tif --rules rules.txt
 
+# The tables of triangles, and the picture.
+filters dem.tif --report -q
+[ "$(wc -l <out)" -eq 21 ] || fail 'not the tables'
+says '^triangles, delta 4 m, 3 spline steps$'
+[ "$(grep -c '[0-9][*]' out)" -eq 5 ] || fail 'the fewest are not marked'
+awk 'NR > 2 && NR < 6 && !($2 > $5 && $6 > 1) { exit 1 }' out || fail 'filtering saves no triangles'
+mv out before
+filters dem.tif --report -q --landuse use.json
+cmp -s out before && fail 'land use changes no table'
+filters dem.tif --difference away.png
+says '^600 x 301 posts'
+[ "$(od -An -tx1 -N8 away.png | tr -d ' ')" = 89504e470d0a1a0a ] || fail 'away.png: no picture'
+filters dem.tif --difference nothing.png --delta 0 --least 0 --thresholds hill=0,0,0,0,0,0,0,0,0
+[ "$(wc -c <nothing.png)" -lt "$(wc -c <away.png)" ] || fail 'a picture without differences is not all white'
+refuses 1 'nowhere/away.png' dem.tif --difference nowhere/away.png
+
 # Bad command lines.
 refuses 2 'which DEM' -o to.tif
 refuses 2 '-o names' dem.tif
@@ -159,7 +175,7 @@ for value in hill hill= hill=1 hill=0,0,0,0,0,0,0,0 hill=0,0,0,0,0,0,0,0,0,0 hil
     hill=0,0,0,0,0,0,0,0,nan mountain=0,0,0,0,0,0,0,0,0 =0,0,0,0,0,0,0,0,0 hil=0,0,0,0,0,0,0,0,0; do
     refuses 2 'CLASS=T0' dem.tif -o to.tif --thresholds "$value"
 done
-refuses 2 'megabytes' dem.tif -o to.tif --memory 0
+refuses 2 'megabytes' dem.tif -o to.tif --filter-memory 0
 refuses 2 '--config' dem.tif -o to.tif --config KEY
 refuses 2 'extent' dem.tif -o to.tif --te 1 1 1 1
 
@@ -175,7 +191,7 @@ printf 'ncols 1\nnrows 1\nxllcorner 10\nyllcorner 45\ncellsize 0.01\n7\n' >one.a
 refuses 1 '2 x 2 posts' one.asc -o to.tif
 refuses 1 'outside of --te' grid.asc -o to.tif --te 50 5 51 6
 refuses 1 'no band 9' grid.asc -o to.tif -b 9
-refuses 1 'allow that with --memory' dem.tif -o to.tif --memory 4
+refuses 1 'allow that with' dem.tif -o to.tif --filter-memory 4
 
 # Places that cannot be written to.
 refuses 1 'nowhere/to.tif' dem.tif -o nowhere/to.tif
