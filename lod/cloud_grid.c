@@ -10,6 +10,7 @@
 #define HILBERT_BITS  (POSITION_BITS + 1)
 #define BOX_CORNERS   4
 #define CLOSE         1e-6 /* of a post's spacing: so far outside of a triangle still counts as on its edge */
+#define THINNEST      1e-9 /* of the points' bounds: less is a line */
 #define MOST_POSTS    2147483647.0
 
 /* ---- where posts lie ---- */
@@ -25,7 +26,7 @@ enum scree_status cloud_posts_choose(const struct cloud *cloud, double spacing, 
     double bounds[4];
     cloud_bounds(cloud, bounds);
     double width = bounds[2] - bounds[0], height = bounds[3] - bounds[1];
-    if (!(width > 0 && height > 0))
+    if (!(width > THINNEST && height > THINNEST))
         return scree_fail(error, SCREE_E_ARGUMENT, "its points lie on one line, which is no surface");
     if (spacing == 0) spacing = usual_spacing(sqrt(width * height / cloud->count));
     double first_x = ceil(bounds[0] / spacing - CLOSE), last_x = floor(bounds[2] / spacing + CLOSE);

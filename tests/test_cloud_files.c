@@ -4,8 +4,10 @@
 #include "tests/suites.h"
 
 #include <CUnit/CUnit.h>
+#include <cpl_conv.h>
 #include <cpl_vsi.h>
 #include <math.h>
+#include <ogr_srs_api.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -117,6 +119,16 @@ static void test_las_wkt(void) {
         put_las(path, &fixture);
         check_field(path, &grid, 0.3048, 0);
     }
+    char *compound = NULL; /* metres, but heights in feet of the US */
+    OGRSpatialReferenceH crs = OSRNewSpatialReference(NULL);
+    CU_ASSERT_EQUAL_FATAL(OSRSetFromUserInput(crs, "EPSG:32611+6360"), OGRERR_NONE);
+    CU_ASSERT_EQUAL_FATAL(OSRExportToWkt(crs, &compound), OGRERR_NONE);
+    struct cloud_options two = {.named = "--grid", .grid = 2};
+    fixture.wkt = compound;
+    put_las(path, &fixture);
+    check_field(path, &two, 1200.0 / 3937, 0);
+    CPLFree(compound);
+    OSRDestroySpatialReference(crs);
     fixture.wkt = "no CRS at all";
     put_las(path, &fixture);
     struct opened r;
