@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_set>
 
 namespace {
 
-constexpr uint64_t BYTES_A_TRIANGLE = 256;  // of memory: 225 to 253 were measured
-constexpr uint64_t BYTES_A_BASE = 2u << 20; // of a tile of which nothing is known yet
-constexpr size_t BYTES_A_FRAME = 1u << 20;  // to the graphics card, for tiles that have come
-constexpr int64_t SPLITS_A_FRAME = 12000;   // while levels move
-constexpr int64_t SPLITS_A_STITCH = 1500;   // what stitching a tile and its neighbours takes, in splits
-constexpr size_t MOST_NEIGHBOURS = SLOT_COUNT - SLOT_NEIGHBOURS;
+constexpr uint64_t BYTES_A_TRIANGLE = 256;            // of memory: 225 to 253 were measured
+constexpr uint64_t BYTES_A_BASE = 2u << 20;           // of a tile of which nothing is known yet
+constexpr size_t BYTES_A_FRAME = 1u << 20;            // to the graphics card, for tiles that have come
+constexpr int64_t SPLITS_A_FRAME = 12000;             // while levels move
+constexpr int64_t SPLITS_A_STITCH = 1500;             // what stitching a tile and its neighbours takes, in splits
 constexpr double SLIGHT = 1e-6;                       // of a rung: nobody sees it
 constexpr std::ptrdiff_t DATA_TILES = 16;             // so many are read to learn the heights
 constexpr double LOWEST_M = -12000, HIGHEST_M = 9000; // until the roots have told
@@ -230,76 +228,6 @@ void TerrainSet::seek() {
     is_due = changed;
     is_moved.assign(drawn.size(), 0);
     if (!is_same) find_neighbours(old_places);
-}
-
-// A tile whose neighbours are others has to be stitched anew.
-void TerrainSet::find_neighbours(const std::vector<size_t> &old_places) {
-    std::vector<scree_tile_id> ids;
-    for (const Shown &one : drawn) ids.push_back(tiles[one.tile].id);
-    uint32_t count = (uint32_t)ids.size();
-    std::vector<uint32_t> at_side(count);
-    std::vector<std::vector<TileMesh::Neighbour>> found(count);
-    beside.assign(count, {});
-    for (uint32_t i = 0; i < count; i++) {
-        for (int side = 0; side < SCREE_SIDES; side++) {
-            uint32_t found_there = scree_cut_neighbours(ids.data(), count, manifest.terrain.profile, &ids[i],
-                                                        (scree_side)side, at_side.data(), count);
-            for (uint32_t k = 0; k < found_there; k++) {
-                found[i].push_back({drawn[at_side[k]].mesh.get(), (scree_side)side});
-                beside[i].push_back(at_side[k]);
-            }
-        }
-        if (old_places[i] == SIZE_MAX || neighbours[old_places[i]] != found[i]) is_due[i] = is_moved[i] = 1;
-    }
-    neighbours = std::move(found);
-}
-
-void TerrainSet::stitch_changed(bool stitched) {
-    std::unordered_set<const TileMesh *> others;
-    for (size_t i = 0; i < drawn.size(); i++)
-        if (changed[i]) others.insert(drawn[i].mesh.get());
-    for (size_t i = 0; i < drawn.size(); i++)
-        for (const TileMesh::Neighbour &beside : neighbours[i])
-            if (stitched != was_stitched || others.count(beside.mesh) != 0) is_due[i] = 1;
-    was_stitched = stitched;
-    for (size_t i = 0; i < drawn.size(); i++)
-        if (is_moved[i]) drawn[i].mesh->share_normals(neighbours[i]);
-    for (size_t i = 0; i < drawn.size(); i++) {
-        std::string error;
-        if (is_due[i] && !drawn[i].mesh->stitch(stitched ? neighbours[i] : std::vector<TileMesh::Neighbour>{}, &error))
-            log(manifest.path_of(tiles[drawn[i].tile].id) + ": " + error);
-    }
-}
-
-// By which level the vertices of a side morph, so that both tiles agree: by the finer tile's, whose vertices are drawn
-// on both sides. Beside tiles of a finer zoom, all that this one has are where they belong.
-float TerrainSet::side_level(uint32_t at, scree_side side) const {
-    const TileMesh &mesh = *drawn[at].mesh;
-    float level = (float)mesh.level();
-    for (size_t k = 0; k < beside[at].size(); k++) {
-        if (neighbours[at][k].side != side) continue;
-        const TileMesh &other = *neighbours[at][k].mesh;
-        int zooms = other.header().zoom - mesh.header().zoom;
-        bool is_same_ladder = zooms != 0 || other.header().rungs[0].rung == mesh.header().rungs[0].rung;
-        bool is_crowded = beside[at].size() > MOST_NEIGHBOURS || beside[beside[at][k]].size() > MOST_NEIGHBOURS;
-        if (zooms > 0 || !is_same_ladder || is_crowded) return LEVEL_FULL;
-        if (zooms == 0) level = std::max(level, (float)other.level());
-    }
-    return level;
-}
-
-void TerrainSet::agree_on_levels(bool stitched) {
-    for (uint32_t i = 0; i < drawn.size(); i++) {
-        TileMesh &mesh = *drawn[i].mesh;
-        std::fill_n(mesh.levels, SLOT_COUNT, (float)mesh.level());
-        for (int side = 0; side < SCREE_SIDES && stitched; side++)
-            mesh.levels[SLOT_SIDES + side] = side_level(i, (scree_side)side);
-        for (size_t k = 0; k < beside[i].size() && stitched; k++)
-            mesh.levels[std::min<size_t>(SLOT_NEIGHBOURS + k, SLOT_COUNT - 1)] =
-                beside[i].size() > MOST_NEIGHBOURS
-                    ? LEVEL_FULL
-                    : side_level(beside[i][k], (scree_side)((neighbours[i][k].side + 2) % SCREE_SIDES));
-    }
 }
 
 uint64_t TerrainSet::bytes_held() const {
