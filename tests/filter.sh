@@ -150,8 +150,9 @@ filters dem.tif --report -q
 says '^triangles, delta 4 m, 3 spline steps$'
 [ "$(grep -c '[0-9][*]' out)" -eq 5 ] || fail 'the fewest are not marked'
 awk 'NR > 2 && NR < 6 && !($2 > $5 && $6 > 1) { exit 1 }' out || fail 'filtering saves no triangles'
+filters dem.tif --report -q --te 403000 3800000 407000 3804000
 mv out before
-filters dem.tif --report -q --landuse use.json
+filters dem.tif --report -q --te 403000 3800000 407000 3804000 --landuse use.json
 cmp -s out before && fail 'land use changes no table'
 filters dem.tif --difference away.png
 says '^600 x 301 posts'
@@ -159,6 +160,15 @@ says '^600 x 301 posts'
 filters dem.tif --difference nothing.png --delta 0 --least 0 --thresholds hill=0,0,0,0,0,0,0,0,0
 [ "$(wc -c <nothing.png)" -lt "$(wc -c <away.png)" ] || fail 'a picture without differences is not all white'
 refuses 1 'nowhere/away.png' dem.tif --difference nowhere/away.png
+
+# The page for newcomers, as it is written; what make makes is there.
+mkdir newcomer && ln -s "$TOP_BUILDDIR" newcomer/build
+sed -n 's/^    //p' "$TOP_SRCDIR/docs/filter.md" | grep -v '^make ' >newcomer/page.sh
+(cd newcomer && sh -e page.sh) >out 2>err || fail 'docs/filter.md: a command fails'
+says '^landuse.geojson: 1 water, 0 shore, 1 railway'
+for made in smooth.tif used.tif changed.png out/terrain/layer.json; do
+    [ -s "newcomer/$made" ] || fail "docs/filter.md: no $made"
+done
 
 # Bad command lines.
 refuses 2 'which DEM' -o to.tif
