@@ -79,7 +79,7 @@ struct filter {
     const struct context_posts *posts;
     const struct context_options *options;
     uint8_t *near_posts; /* or NULL */
-    double *block, *room;
+    struct haar_block *block;
     float *filtered_m; /* the spline's heights, until a block is done */
     struct context_counts *counts;
 };
@@ -98,7 +98,7 @@ static void load_block(const struct filter *filter, int32_t x, int32_t y) {
     for (int32_t j = 0; j < HAAR_SIDE; j++) {
         const int32_t row = y + j < posts->rows ? y + j : posts->rows - 1;
         const float *from_m = posts->heights_m + (size_t)row * (size_t)posts->columns;
-        double *to_m = filter->block + (size_t)j * HAAR_SIDE;
+        double *to_m = filter->block->coefficients + (size_t)j * HAAR_SIDE;
         const int32_t inside = posts->columns - x < HAAR_SIDE ? posts->columns - x : HAAR_SIDE;
         for (int32_t i = 0; i < inside; i++) to_m[i] = from_m[x + i];
         for (int32_t i = inside; i < HAAR_SIDE; i++) to_m[i] = to_m[inside - 1];
@@ -112,7 +112,7 @@ static float detailed_m(const struct filter *filter, int32_t x, int32_t y, size_
     if (filter->options->detail == CONTEXT_UNFILTERED) return height_m;
     if (!*is_transformed) {
         load_block(filter, x & -HAAR_SIDE, y & -HAAR_SIDE);
-        haar_transform(filter->block, filter->room);
+        haar_transform(filter->block);
         *is_transformed = true;
     }
     const double haar_m = haar_height_m(filter->block, x & (HAAR_SIDE - 1), y & (HAAR_SIDE - 1),
@@ -175,15 +175,12 @@ static enum scree_status check_waters(const struct context_posts *posts, struct 
 }
 
 static enum scree_status add_detail(struct scree_memory *memory, struct filter *filter, struct scree_error *error) {
-    const size_t block_posts = (size_t)HAAR_SIDE * HAAR_SIDE;
     enum scree_status status = SCREE_OK;
     if (filter->posts->uses != NULL) status = mark_near(memory, filter->posts, &filter->near_posts, error);
-    filter->block = scree_allocate(memory, block_posts, sizeof *filter->block, "a block of coefficients", error);
-    filter->room = scree_allocate(memory, block_posts, sizeof *filter->room, "a block of coefficients", error);
-    if (filter->block == NULL || filter->room == NULL) status = SCREE_E_MEMORY;
+    filter->block = scree_allocate(memory, 1, sizeof *filter->block, "a block of coefficients", error);
+    if (filter->block == NULL) status = SCREE_E_MEMORY;
     for (int32_t y = 0; y < filter->posts->rows && status == SCREE_OK; y += HAAR_SIDE)
         for (int32_t x = 0; x < filter->posts->columns; x += HAAR_SIDE) filter_block(filter, x, y);
-    scree_release(memory, filter->room);
     scree_release(memory, filter->block);
     scree_release(memory, filter->near_posts);
     return status;

@@ -68,7 +68,7 @@ struct context_counts {
 };
 
 /* Filters into filtered_m, which has as many heights and is not heights_m. Each water takes the mean of its unfiltered
- * heights. Takes 3 bytes a post, one more with `uses`, and 4 MiB. */
+ * heights. Takes 3 bytes a post, one more with `uses`, and 5 MiB. */
 enum scree_status context_filter(struct scree_memory *memory, const struct context_posts *posts,
                                  const struct context_options *options, float *filtered_m,
                                  struct context_counts *counts, struct scree_error *error);

@@ -18,11 +18,22 @@ static void transform_pair(const double *block, int32_t side, int32_t pair, doub
     }
 }
 
-void haar_transform(double *block, double *room) {
-    for (int32_t side = HAAR_SIDE; side > 1; side /= 2) {
-        for (int32_t pair = 0; pair < side / 2; pair++) transform_pair(block, side, pair, room);
-        for (int32_t row = 0; row < side; row++)
-            memcpy(block + (size_t)row * HAAR_SIDE, room + (size_t)row * HAAR_SIDE, (size_t)side * sizeof *block);
+/* Where the means of a level begin: 4^0 + 4^1 ... are before them. */
+static size_t means_before(int level) {
+    return (((size_t)1 << 2 * level) - 1) / 3;
+}
+
+void haar_transform(struct haar_block *block) {
+    for (int level = HAAR_LEVELS - 1; level >= 0; level--) {
+        const int32_t side = 2 << level, half = 1 << level;
+        for (int32_t pair = 0; pair < half; pair++) transform_pair(block->coefficients, side, pair, block->room);
+        for (int32_t row = 0; row < side; row++) {
+            const double *from = block->room + (size_t)row * HAAR_SIDE;
+            memcpy(block->coefficients + (size_t)row * HAAR_SIDE, from, (size_t)side * sizeof *from);
+            if (row < half)
+                memcpy(block->means + means_before(level) + (size_t)row * (size_t)half, from,
+                       (size_t)half * sizeof *from);
+        }
     }
 }
 
@@ -39,33 +50,36 @@ static double along_of(const double *block, int32_t column, int32_t row, int i) 
     return column >> (shift - 1) & 1 ? -c : c;
 }
 
-static double sum_each(const double *block, int32_t column, int32_t row, const double *thresholds_m) {
-    double height_m = block[0];
+/* The mean of the post's square of level i: every coefficient of the levels before. */
+static double mean_of(const struct haar_block *block, int32_t column, int32_t row, int i) {
+    const int shift = HAAR_LEVELS - i;
+    return block->means[means_before(i) + ((size_t)(row >> shift) << i) + (size_t)(column >> shift)];
+}
+
+static double sum_each(const struct haar_block *block, int32_t column, int32_t row, const double *thresholds_m) {
+    double height_m = block->means[0];
     for (int i = 0; i < HAAR_LEVELS; i++) {
-        const double across = across_of(block, column, row, i), along = along_of(block, column, row, i);
+        const double across = across_of(block->coefficients, column, row, i);
+        const double along = along_of(block->coefficients, column, row, i);
         if (fabs(across) >= thresholds_m[i]) height_m += across;
         if (fabs(along) >= thresholds_m[i]) height_m += along;
     }
     return height_m;
 }
 
-static double sum_tail(const double *block, int32_t column, int32_t row, const double *thresholds_m) {
-    int most_along = HAAR_LEVELS - 1, most_across = HAAR_LEVELS - 1; /* m_1 and m_2 of the paper */
-    while (most_across >= 0 && fabs(across_of(block, column, row, most_across)) < thresholds_m[most_across])
-        most_across--;
-    while (most_along >= 0 && fabs(along_of(block, column, row, most_along)) < thresholds_m[most_along]) most_along--;
-    const int last_across = most_along - 1 > most_across ? most_along - 1 : most_across;
-    const int last_along = most_along > most_across ? most_along : most_across;
-    double height_m = block[0];
-    for (int i = 0; i <= last_along; i++) {
-        if (i <= last_across) height_m += across_of(block, column, row, i);
-        height_m += along_of(block, column, row, i);
+/* From fine to coarse, across before along: the first coefficient that reaches its threshold, and all after it. */
+static double sum_tail(const struct haar_block *block, int32_t column, int32_t row, const double *thresholds_m) {
+    for (int i = HAAR_LEVELS - 1; i >= 0; i--) {
+        const double across = across_of(block->coefficients, column, row, i);
+        const double along = along_of(block->coefficients, column, row, i);
+        if (fabs(across) >= thresholds_m[i]) return mean_of(block, column, row, i) + across + along;
+        if (fabs(along) >= thresholds_m[i]) return mean_of(block, column, row, i) + along;
     }
-    return height_m;
+    return block->means[0];
 }
 
-double haar_height_m(const double *block, int32_t column, int32_t row, const double thresholds_m[HAAR_LEVELS],
-                     enum haar_variant variant) {
+double haar_height_m(const struct haar_block *block, int32_t column, int32_t row,
+                     const double thresholds_m[HAAR_LEVELS], enum haar_variant variant) {
     return variant == HAAR_TAIL ? sum_tail(block, column, row, thresholds_m)
                                 : sum_each(block, column, row, thresholds_m);
 }

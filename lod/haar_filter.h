@@ -20,12 +20,20 @@ enum haar_variant {
     HAAR_EACH  /* eq. 3: whatever stays below its threshold is left out */
 };
 
-/* Transforms a block of HAAR_SIDE rows of HAAR_SIDE heights in place; `room` is as large as the block. */
-void haar_transform(double *block, double *room);
+#define HAAR_MEANS ((HAAR_SIDE * HAAR_SIDE - 1) / 3)
+
+struct haar_block {
+    double coefficients[HAAR_SIDE * HAAR_SIDE]; /* rows; heights, until they are transformed */
+    double means[HAAR_MEANS];                   /* of 1, 2 x 2, 4 x 4 ... squares: all coarser coefficients summed up */
+    double room[HAAR_SIDE * HAAR_SIDE];         /* for the transform */
+};
+
+/* Transforms the heights in `coefficients` in place. */
+void haar_transform(struct haar_block *block);
 
 /* The filtered height of a post of the block. thresholds_m[i] is for the coefficients of level i, 0 the coarsest; zeros
  * give the height back. */
-double haar_height_m(const double *block, int32_t column, int32_t row, const double thresholds_m[HAAR_LEVELS],
-                     enum haar_variant variant);
+double haar_height_m(const struct haar_block *block, int32_t column, int32_t row,
+                     const double thresholds_m[HAAR_LEVELS], enum haar_variant variant);
 
 #endif

@@ -17,7 +17,7 @@ enum { COLUMNS = 700, ROWS = 530, POSTS = COLUMNS * ROWS, LINE = 65 };
 static float heights_m[POSTS], filtered_m[POSTS], other_m[POSTS];
 static uint8_t uses[POSTS];
 static uint32_t waters[POSTS];
-static double block[HAAR_SIDE * HAAR_SIDE], room[HAAR_SIDE * HAAR_SIDE];
+static struct haar_block block;
 
 static void fill_fractal(uint64_t seed) {
     const struct fractal fractal = {.seed = seed};
@@ -138,8 +138,8 @@ static void rows_go_through_the_splines_posts(void) {
 static void load_block(void) {
     fill_fractal(5);
     for (int32_t y = 0; y < HAAR_SIDE; y++)
-        for (int32_t x = 0; x < HAAR_SIDE; x++) block[y * HAAR_SIDE + x] = heights_m[y * COLUMNS + x];
-    haar_transform(block, room);
+        for (int32_t x = 0; x < HAAR_SIDE; x++) block.coefficients[y * HAAR_SIDE + x] = heights_m[y * COLUMNS + x];
+    haar_transform(&block);
 }
 
 static void zero_thresholds_give_all_back(void) {
@@ -150,10 +150,10 @@ static void zero_thresholds_give_all_back(void) {
         for (int32_t x = 0; x < HAAR_SIDE; x++) {
             const float height_m = heights_m[y * COLUMNS + x];
             mean_m += height_m / (HAAR_SIDE * (double)HAAR_SIDE);
-            CU_ASSERT_EQUAL((float)haar_height_m(block, x, y, none_m, HAAR_TAIL), height_m);
-            CU_ASSERT_EQUAL((float)haar_height_m(block, x, y, none_m, HAAR_EACH), height_m);
+            CU_ASSERT_EQUAL((float)haar_height_m(&block, x, y, none_m, HAAR_TAIL), height_m);
+            CU_ASSERT_EQUAL((float)haar_height_m(&block, x, y, none_m, HAAR_EACH), height_m);
         }
-    CU_ASSERT_DOUBLE_EQUAL(block[0], mean_m, 1e-6);
+    CU_ASSERT_DOUBLE_EQUAL(block.means[0], mean_m, 1e-6);
 }
 
 /* What is left out is smaller than its threshold, twice at each level. */
@@ -167,7 +167,7 @@ static void thresholds_bound_the_difference(void) {
             for (int32_t x = 0; x < HAAR_SIDE; x++)
                 for (int variant = 0; variant < 2; variant++) {
                     const double got_m =
-                        haar_height_m(block, x, y, options.thresholds_m[class], (enum haar_variant)variant);
+                        haar_height_m(&block, x, y, options.thresholds_m[class], (enum haar_variant)variant);
                     const double away_m = fabs(got_m - heights_m[y * COLUMNS + x]);
                     most_m[variant] = fmax(most_m[variant], away_m);
                     sum_m[variant] += away_m;
@@ -183,13 +183,13 @@ static void variants_differ_in_the_middle(void) {
     const double thresholds_m[HAAR_LEVELS] = {0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1};
     for (int32_t y = 0; y < HAAR_SIDE; y++)
         for (int32_t x = 0; x < HAAR_SIDE; x++)
-            block[y * HAAR_SIDE + x] = 100 + (x < HAAR_SIDE / 2 ? 0.02 : 0) + (y == 7 && x == 9 ? 1 : 0);
-    haar_transform(block, room);
-    CU_ASSERT_DOUBLE_EQUAL(haar_height_m(block, 9, 7, thresholds_m, HAAR_TAIL), 101.02, 1e-9);
-    CU_ASSERT(haar_height_m(block, 9, 7, thresholds_m, HAAR_EACH) < 101.01);
+            block.coefficients[y * HAAR_SIDE + x] = 100 + (x < HAAR_SIDE / 2 ? 0.02 : 0) + (y == 7 && x == 9 ? 1 : 0);
+    haar_transform(&block);
+    CU_ASSERT_DOUBLE_EQUAL(haar_height_m(&block, 9, 7, thresholds_m, HAAR_TAIL), 101.02, 1e-9);
+    CU_ASSERT(haar_height_m(&block, 9, 7, thresholds_m, HAAR_EACH) < 101.01);
     /* Far from both, the mean of the block is all that is left. */
-    CU_ASSERT_DOUBLE_EQUAL(haar_height_m(block, 300, 300, thresholds_m, HAAR_TAIL), block[0], 1e-12);
-    CU_ASSERT_DOUBLE_EQUAL(block[0], 100.01, 1e-4);
+    CU_ASSERT_DOUBLE_EQUAL(haar_height_m(&block, 300, 300, thresholds_m, HAAR_TAIL), block.means[0], 1e-12);
+    CU_ASSERT_DOUBLE_EQUAL(block.means[0], 100.01, 1e-4);
 }
 
 /* ---- classes ---- */
