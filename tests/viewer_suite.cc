@@ -332,6 +332,17 @@ void test_manifest_is_not_believed(void) {
     files::path folder = files::path(streams_folder() + "_spoilt");
     files::create_directories(folder);
     CU_ASSERT_FATAL(text.size() > 1000);
+    for (const char *list : {"\"svo_m\": [", "\"max_error_m\": [", "\"data_bounds\": ["})
+        for (const char *number : {"\"5\", ", "NaN, ", "[], ", "7, 8, "}) { // in its first place
+            std::string spoilt = text;
+            size_t at = text.rfind(list);
+            CU_ASSERT_FATAL(at != std::string::npos);
+            spoilt.replace(at + std::strlen(list), text.find(',', at) + 1 - at - std::strlen(list), number);
+            std::ofstream(folder / "scree.json") << spoilt;
+            Manifest manifest;
+            std::string error;
+            CU_ASSERT_FALSE(manifest_read(folder.string(), &manifest, &error));
+        }
     for (size_t at = 7; at < text.size(); at += 23) {
         std::string spoilt = text;
         spoilt[at] = spoilt[at] == '9' ? '-' : '9';

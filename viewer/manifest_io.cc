@@ -37,13 +37,24 @@ bool ends_in(const std::string &text, const char *end) {
     return text.size() >= tail.size() && text.compare(text.size() - tail.size(), tail.size(), tail) == 0;
 }
 
-bool is_number(const CPLJSONObject &object, const char *name, double *value) {
-    CPLJSONObject member = object.GetObj(name);
-    auto type = member.IsValid() ? member.GetType() : CPLJSONObject::Type::Unknown;
+bool number_of(const CPLJSONObject &object, double *value) {
+    auto type = object.IsValid() ? object.GetType() : CPLJSONObject::Type::Unknown;
     bool is = type == CPLJSONObject::Type::Double || type == CPLJSONObject::Type::Integer ||
               type == CPLJSONObject::Type::Long;
-    if (is) *value = member.ToDouble();
+    if (is) *value = object.ToDouble();
     return is && std::isfinite(*value);
+}
+
+bool is_number(const CPLJSONObject &object, const char *name, double *value) {
+    return number_of(object.GetObj(name), value);
+}
+
+// A list of just so many.
+bool are_numbers(const CPLJSONObject &object, const char *name, int count, double *values) {
+    CPLJSONArray list = object.GetArray(name);
+    bool are = list.IsValid() && list.Size() == count;
+    for (int i = 0; i < count && are; i++) are = number_of(list[i], &values[i]);
+    return are;
 }
 
 bool is_count(const CPLJSONObject &object, const char *name, GInt64 highest, GInt64 *value) {
@@ -82,9 +93,10 @@ bool read_zooms(const CPLJSONObject &root, Manifest *manifest) {
         if (!is_count(list[i], "zoom", SCREE_MAX_ZOOM, &zoom)) return false;
         CPLJSONObject finest = list[i].GetObj("finest");
         if (!finest.IsValid()) continue;
-        CPLJSONArray svo = finest.GetArray("svo_m"), error = finest.GetArray("max_error_m");
-        if (!svo.IsValid() || !error.IsValid() || svo.Size() != 2 || error.Size() != 2) return false;
-        manifest->zooms[(size_t)zoom] = {svo[1].ToDouble(), error[1].ToDouble()};
+        double svo_m[2], max_error_m[2];
+        if (!are_numbers(finest, "svo_m", 2, svo_m) || !are_numbers(finest, "max_error_m", 2, max_error_m))
+            return false;
+        manifest->zooms[(size_t)zoom] = {svo_m[1], max_error_m[1]};
     }
     return true;
 }
@@ -111,13 +123,6 @@ bool read_tiles(const CPLJSONObject &root, Manifest *manifest) {
     return !manifest->tiles.empty();
 }
 
-bool read_bounds(const CPLJSONObject &root, Manifest *manifest) {
-    CPLJSONArray list = root.GetArray("data_bounds");
-    if (!list.IsValid() || list.Size() != 4) return false;
-    for (int i = 0; i < 4; i++) manifest->bounds[i] = list[i].ToDouble();
-    return std::all_of(manifest->bounds, manifest->bounds + 4, [](double bound) { return std::isfinite(bound); });
-}
-
 bool read_json(const std::string &path, Manifest *manifest, std::string *error) {
     CPLJSONDocument document;
     if (!document.Load(path)) return refuse(error, path, "is no JSON; make it with scree build");
@@ -132,7 +137,8 @@ bool read_json(const std::string &path, Manifest *manifest, std::string *error) 
     manifest->crs_wkt = root.GetString("crs_wkt");
     if (!read_lattice(root, manifest)) return refuse(error, path, "its lattice is missing or makes no sense");
     if (!read_zooms(root, manifest)) return refuse(error, path, "its zooms are missing or incomplete");
-    if (!read_bounds(root, manifest)) return refuse(error, path, "its data_bounds are not four numbers");
+    if (!are_numbers(root, "data_bounds", 4, manifest->bounds))
+        return refuse(error, path, "its data_bounds are not four numbers");
     if (!read_tiles(root, manifest)) return refuse(error, path, "its list of available tiles is missing or wrong");
     manifest->folder = path.substr(0, path.find_last_of('/') + 1);
     return true;
