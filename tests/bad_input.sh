@@ -2,28 +2,9 @@
 # Bad input, odd input, bad places to write to, Ctrl-C: one line on standard error and exit code 1 or 2, nothing that
 # looks finished; or a terrain of which verify finds no promise broken.
 set -u
-scree=$TOP_BUILDDIR/scree
-scratch=$(mktemp -d) || exit 99
+verb="build -q" made=to/terrain/layer.json
+. "$TOP_SRCDIR/tests/refuse.sh"
 trap 'umount "$scratch/disk" 2>/dev/null; rm -rf "$scratch"' EXIT
-cd "$scratch" || exit 99
-failed=0
-fail() {
-    echo "$1"
-    cat out err
-    failed=1
-}
-# refuses CODE WORDS ARGUMENT...: the build fails with that code and says that in one line; there is no layer.json.
-refuses() {
-    wanted=$1 words=$2
-    shift 2
-    rm -rf to
-    "$scree" build -q "$@" >out 2>err
-    got=$?
-    [ $got -eq "$wanted" ] || fail "build $*: exit code $got, not $wanted"
-    [ "$(wc -l <err)" -eq 1 ] || fail "build $*: one line was expected on stderr"
-    grep -q -- "$words" err || fail "build $*: '$words' was expected on stderr"
-    [ ! -e to/terrain/layer.json ] || fail "build $*: there is a layer.json"
-}
 # builds DEM OPTION...: it does, and every promise holds against the source.
 builds() {
     rm -rf to

@@ -2,34 +2,8 @@
 # scree filter: a raster comes out with its pixels and CRS, smoothed, the same every time; what cannot be done is one
 # line on standard error, exit code 1 or 2, and no file.
 set -u
-scree=$TOP_BUILDDIR/scree
-scratch=$(mktemp -d) || exit 99
-trap 'rm -rf "$scratch"' EXIT
-cd "$scratch" || exit 99
-failed=0
-fail() {
-    echo "$1"
-    cat out err
-    failed=1
-}
-# filters ARGUMENT...: it does; what it says is in out.
-filters() {
-    "$scree" filter "$@" >out 2>err || fail "filter $*: does not"
-    [ ! -s err ] || fail "filter $*: nothing was expected on stderr"
-}
-says() { grep -q -- "$1" out || fail "'$1' was expected on stdout"; }
-# refuses CODE WORDS ARGUMENT...: it fails with that code and says that in one line; there is no file.
-refuses() {
-    wanted=$1 words=$2
-    shift 2
-    rm -f to.tif
-    "$scree" filter "$@" >out 2>err
-    got=$?
-    [ $got -eq "$wanted" ] || fail "filter $*: exit code $got, not $wanted"
-    [ "$(wc -l <err)" -eq 1 ] || fail "filter $*: one line was expected on stderr"
-    grep -q -- "$words" err || fail "filter $*: '$words' was expected on stderr"
-    [ ! -e to.tif ] || fail "filter $*: there is a file"
-}
+verb=filter made=to.tif
+. "$TOP_SRCDIR/tests/refuse.sh"
 
 "$TOP_BUILDDIR/tests/fractal_dem" -o dem.tif --size 600 --rows 301 --type Float32 --epsg 32611 --spacing-m 30 >out 2>err ||
     fail 'no DEM to work on'
@@ -47,10 +21,10 @@ NODATA_value -9999
 EOG
 
 # The same pixels and CRS; smaller steps and deltas stay closer; the same bytes again.
-filters dem.tif -o to.tif
+does dem.tif -o to.tif
 says '^to.tif: 600 x 301 posts; heights changed by RMS'
 says 'are hill.*keep detail'
-filters dem.tif -o again.tif
+does dem.tif -o again.tif
 cmp to.tif again.tif || failed=1
 # rms: what the last filter changed
 rms() { sed -n 's/.* changed by RMS \([^ ]*\) m.*/\1/p' out; }
@@ -58,31 +32,31 @@ rms() { sed -n 's/.* changed by RMS \([^ ]*\) m.*/\1/p' out; }
 closer() {
     awk "BEGIN { exit !($(rms) < $before) }" || fail "$1: RMS $(rms) is not less than $before"
 }
-filters dem.tif -o other.tif
+does dem.tif -o other.tif
 before=$(rms)
-filters dem.tif -o other.tif --delta 1
+does dem.tif -o other.tif --delta 1
 closer '--delta 1'
-filters dem.tif -o other.tif --spline-steps 1
+does dem.tif -o other.tif --spline-steps 1
 closer '--spline-steps 1'
-filters dem.tif -o other.tif --thresholds hill=0,0,0,0,0,0,0,0,0
+does dem.tif -o other.tif --thresholds hill=0,0,0,0,0,0,0,0,0
 closer '--thresholds'
-filters dem.tif -o other.tif --variant 1
+does dem.tif -o other.tif --variant 1
 cmp -s to.tif other.tif && fail '--variant 1: the same file'
-filters dem.tif -o other.tif --delta 0 --least 0 --thresholds hill=0,0,0,0,0,0,0,0,0
+does dem.tif -o other.tif --delta 0 --least 0 --thresholds hill=0,0,0,0,0,0,0,0,0
 says 'RMS 0 m, at most 0 m'
-filters -q dem.tif -o other.tif
+does -q dem.tif -o other.tif
 [ ! -s out ] || fail '-q: nothing was expected on stdout'
 "$scree" build to.tif -o built -q --profile local --products terrain --error 1e5 2>err || fail 'it cannot be built'
 
 # Posts without data stay so, unless they are given a height.
 all='--delta 0 --least 0 --thresholds hill=0,0,0,0,0,0,0,0,0 --fill-distance -1'
-filters grid.asc -o grid.tif $all
+does grid.asc -o grid.tif $all
 says 'RMS 0 m'
-filters grid.tif -o grid2.tif $all
+does grid.tif -o grid2.tif $all
 cmp grid.tif grid2.tif || fail 'a raster with a void is not what it was'
-filters grid.asc -o flat.tif $all --nodata-height 30
+does grid.asc -o flat.tif $all --nodata-height 30
 cmp -s grid.tif flat.tif && fail '--nodata-height changes nothing'
-filters dem.tif -o part.tif --te 400500 3800500 404000 3804000
+does dem.tif -o part.tif --te 400500 3800500 404000 3804000
 says '117 x 117 posts'
 
 # Land use: near what has to be kept less changes; waters are flat. Polygons in longitude and latitude, in the raster's
@@ -106,13 +80,13 @@ collection() {
     square '"class":"meadow"' 10 10 60 && echo ,
     square '"class":"water"' 1000 1000 60
 } | collection 32611 >use.json
-filters dem.tif -o used.tif --landuse use.json
+does dem.tif -o used.tif --landuse use.json
 says '^use.json: 1 water, 0 shore, 0 railway, 1 bridge, 2 road, 0 forest; 1 roads meet a bridge$'
 says '^use.json: 1 lie outside of the raster$'
 says ', 1.99 % are levelled$' # 3600 of 180600 posts
 cmp -s to.tif used.tif && fail '--landuse changes nothing'
 printf '# what is looked at\nrailway lanes=*\n\n bridge   class = bridge \n' >rules.txt
-filters dem.tif -o ruled.tif --landuse use.json --rules rules.txt
+does dem.tif -o ruled.tif --landuse use.json --rules rules.txt
 says '^use.json: 0 water, 0 shore, 1 railway, 1 bridge, 0 road, 0 forest; 0 roads'
 says ' 3.54 % are railway' # 6400 of 180600 posts
 {
@@ -124,11 +98,11 @@ says ' 3.54 % are railway' # 6400 of 180600 posts
 [[-118.05,34.35],[-118.0,34.38]]}}
 EOG
 } | collection 4326 >degrees.json
-filters dem.tif -o wood.tif --landuse degrees.json
+does dem.tif -o wood.tif --landuse degrees.json
 says '^degrees.json: 0 water, 0 shore, 1 railway, 0 bridge, 0 road, 1 forest'
 says '^degrees.json: 1 are invalid and were repaired'
 says '^degrees.json: 1 have no usable geometry'
-filters grid.asc -o grid2.tif --landuse degrees.json
+does grid.asc -o grid2.tif --landuse degrees.json
 says '2 lie outside of the raster'
 refuses 1 'nothing.json' dem.tif -o to.tif --landuse nothing.json
 head -c 300 use.json >cut.json
@@ -145,19 +119,19 @@ refuses 1 'nothing.txt' dem.tif -o to.tif --landuse use.json --rules nothing.txt
 refuses 2 'goes with --landuse' dem.tif -o to.tif --rules rules.txt
 
 # The tables of triangles, and the picture.
-filters dem.tif --report -q
+does dem.tif --report -q
 [ "$(wc -l <out)" -eq 21 ] || fail 'not the tables'
 says '^triangles, delta 4 m, 3 spline steps$'
 [ "$(grep -c '[0-9][*]' out)" -eq 5 ] || fail 'the fewest are not marked'
 awk 'NR > 2 && NR < 6 && !($2 > $5 && $6 > 1) { exit 1 }' out || fail 'filtering saves no triangles'
-filters dem.tif --report -q --te 403000 3800000 407000 3804000
+does dem.tif --report -q --te 403000 3800000 407000 3804000
 mv out before
-filters dem.tif --report -q --te 403000 3800000 407000 3804000 --landuse use.json
+does dem.tif --report -q --te 403000 3800000 407000 3804000 --landuse use.json
 cmp -s out before && fail 'land use changes no table'
-filters dem.tif --difference away.png
+does dem.tif --difference away.png
 says '^600 x 301 posts'
 [ "$(od -An -tx1 -N8 away.png | tr -d ' ')" = 89504e470d0a1a0a ] || fail 'away.png: no picture'
-filters dem.tif --difference nothing.png --delta 0 --least 0 --thresholds hill=0,0,0,0,0,0,0,0,0
+does dem.tif --difference nothing.png --delta 0 --least 0 --thresholds hill=0,0,0,0,0,0,0,0,0
 [ "$(wc -c <nothing.png)" -lt "$(wc -c <away.png)" ] || fail 'a picture without differences is not all white'
 refuses 1 'nowhere/away.png' dem.tif --difference nowhere/away.png
 

@@ -2,34 +2,8 @@
 # scree remesh: meshes in every format, fine where the observer is, the same every time; what cannot be done is one line
 # on standard error, exit code 1 or 2, and no mesh.
 set -u
-scree=$TOP_BUILDDIR/scree
-scratch=$(mktemp -d) || exit 99
-trap 'rm -rf "$scratch"' EXIT
-cd "$scratch" || exit 99
-failed=0
-fail() {
-    echo "$1"
-    cat out err
-    failed=1
-}
-# remeshes ARGUMENT...: it does; what it says is in out.
-remeshes() {
-    "$scree" remesh "$@" >out 2>err || fail "remesh $*: does not"
-    [ ! -s err ] || fail "remesh $*: nothing was expected on stderr"
-}
-says() { grep -q -- "$1" out || fail "'$1' was expected on stdout"; }
-# refuses CODE WORDS ARGUMENT...: it fails with that code and says that in one line; there is no mesh.
-refuses() {
-    wanted=$1 words=$2
-    shift 2
-    rm -f to.ply
-    "$scree" remesh "$@" >out 2>err
-    got=$?
-    [ $got -eq "$wanted" ] || fail "remesh $*: exit code $got, not $wanted"
-    [ "$(wc -l <err)" -eq 1 ] || fail "remesh $*: one line was expected on stderr"
-    grep -q -- "$words" err || fail "remesh $*: '$words' was expected on stderr"
-    [ ! -e to.ply ] || fail "remesh $*: there is a mesh"
-}
+verb=remesh made=to.ply
+. "$TOP_SRCDIR/tests/refuse.sh"
 # triangles FILE.ply
 triangles() { sed -n '/^element face/{s/^element face \([0-9]*\).*/\1/p;q;}' "$1"; }
 
@@ -52,19 +26,19 @@ GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIME
 EOG
 
 # Every format; all posts, where nothing may be merged; fewer, the more may be.
-remeshes dem.tif -o all.ply --threshold 0
+does dem.tif -o all.ply --threshold 0
 says "60300 vertices, 119600 triangles, 100 % of the full grid's; max error 0 m"
 says "over x and y of the raster's CRS"
 [ "$(triangles all.ply)" = 119600 ] || fail 'all.ply: not the full grid'
 before=119600
 for threshold in 1 4 16; do
-    remeshes dem.tif -o some.ply --threshold $threshold
+    does dem.tif -o some.ply --threshold $threshold
     some=$(triangles some.ply)
     [ "$some" -lt "$before" ] || fail "threshold $threshold: $some triangles are not fewer than $before"
     before=$some
 done
 for ending in ply obj stl off; do
-    remeshes dem.tif -o "mesh.$ending" --threshold 20
+    does dem.tif -o "mesh.$ending" --threshold 20
     [ -s "mesh.$ending" ] || fail "mesh.$ending: empty"
 done
 faces=$(grep -c '^f ' mesh.obj)
@@ -73,24 +47,24 @@ faces=$(grep -c '^f ' mesh.obj)
 # The observer: the same place gives the same bytes, another place other ones; from far away next to nothing is needed.
 corner=$("$scree" remesh grid.asc -o mesh.ply --observer 10.02,45.02,30 | sed -n 's/^as the observer sees it: //p')
 [ -n "$corner" ] || fail 'an observer was to be told what they see'
-remeshes dem.tif -o near.ply --threshold 2 --reach 3000 --observer 0,0,1e7
+does dem.tif -o near.ply --threshold 2 --reach 3000 --observer 0,0,1e7
 [ "$(triangles near.ply)" -lt 20 ] || fail 'from far away a few triangles will do'
 x=$(sed -n 's/^add \([-0-9]*\), \([-0-9]*\), .*/\1/p' out)
 y=$(sed -n 's/^add \([-0-9]*\), \([-0-9]*\), .*/\2/p' out)
-remeshes dem.tif -o near.ply --threshold 2 --observer "$x,$y,1000"
+does dem.tif -o near.ply --threshold 2 --observer "$x,$y,1000"
 says 'as the observer sees it: max error'
-remeshes dem.tif -o again.ply --threshold 2 --observer "$x,$y,1000"
+does dem.tif -o again.ply --threshold 2 --observer "$x,$y,1000"
 cmp near.ply again.ply || failed=1
-remeshes dem.tif -o nearer.ply --threshold 2 --observer "$x,$y,1000" --reach 8000
+does dem.tif -o nearer.ply --threshold 2 --observer "$x,$y,1000" --reach 8000
 [ "$(triangles near.ply)" -lt "$(triangles nearer.ply)" ] || fail 'with a farther reach it is finer'
-remeshes -q dem.tif -o quiet.ply
+does -q dem.tif -o quiet.ply
 [ ! -s out ] || fail '-q: nothing was expected on stdout'
 
 # Longitude and latitude, and what the rasters' options do.
-remeshes grid.asc -o mesh.ply --threshold 0
+does grid.asc -o mesh.ply --threshold 0
 says '^in metres east, north and up of 10.025, 45.02$'
 says '20 vertices, 24 triangles'
-remeshes grid.asc -o mesh.ply --te 10.005 45.005 10.03 45.03
+does grid.asc -o mesh.ply --te 10.005 45.005 10.03 45.03
 says 'max error'
 
 # Bad command lines.
@@ -143,7 +117,7 @@ vrt turned.vrt 40 30 '10, 0.05, 0.02, 45, 0.02, -0.05'
 refuses 1 'gdalwarp' turned.vrt -o to.ply
 vrt wide.vrt 40000 3 '10, 0.001, 0, 45, 0, -0.001'
 refuses 1 'crop with --te' wide.vrt -o to.ply
-remeshes wide.vrt -o mesh.ply --te 10 44 20 46
+does wide.vrt -o mesh.ply --te 10 44 20 46
 
 # Places that cannot be written to.
 refuses 1 'nowhere/to.ply' dem.tif -o nowhere/to.ply

@@ -3,35 +3,7 @@
 # larger threshold; and what it says when it cannot draw.
 # Usage: view_quadtree.sh; environment: TOP_SRCDIR, TOP_BUILDDIR, SANITIZE.
 set -u
-view=$TOP_BUILDDIR/scree-view
-picture=$TOP_BUILDDIR/tests/picture
-if [ ! -x "$view" ]; then
-    echo "skipped: scree-view was not built (no OpenSceneGraph)"
-    exit 77
-fi
-if [ -n "${SANITIZE:-}" ]; then
-    echo "skipped: the graphics driver does not pass the sanitizers; the plain build draws these pictures"
-    exit 77
-fi
-# shellcheck source=samples/display.sh
-. "$TOP_SRCDIR/samples/display.sh"
-folder=$(mktemp -d) || exit 99
-trap 'display_end; rm -rf "$folder"' EXIT
-failed=0
-fail() {
-    echo "$1"
-    cat "$folder/said"
-    failed=1
-}
-expect() { # CODE PATTERN ARGUMENT...: ends with this code, and says one line that fits
-    code=$1 pattern=$2
-    shift 2
-    "$view" "$@" >"$folder/said" 2>&1
-    got=$?
-    [ "$got" = "$code" ] || fail "scree-view $*: exit code $got instead of $code"
-    grep -q -e "$pattern" "$folder/said" || fail "scree-view $*: does not say '$pattern'"
-    [ "$(wc -l <"$folder/said")" = 1 ] || fail "scree-view $*: not one line"
-}
+. "$TOP_SRCDIR/tests/view.sh"
 
 "$TOP_BUILDDIR/tests/fractal_dem" -o "$folder/dem.tif" --size 301 --rows 200 --epsg 32611 || exit 1
 dem=$folder/dem.tif

@@ -4,37 +4,10 @@
 # same rungs for perspective and orthogonal cameras at the same metres a pixel. And what it says when it cannot draw.
 # Usage: viewer_screens.sh; environment: TOP_SRCDIR, TOP_BUILDDIR, SANITIZE.
 set -u
-view=$TOP_BUILDDIR/scree-view
-picture=$TOP_BUILDDIR/tests/picture
-if [ ! -x "$view" ]; then
-    echo "skipped: scree-view was not built (no OpenSceneGraph)"
-    exit 77
-fi
-if [ -n "${SANITIZE:-}" ]; then
-    echo "skipped: the graphics driver does not pass the sanitizers; the plain build draws these pictures"
-    exit 77
-fi
-# shellcheck source=samples/display.sh
-. "$TOP_SRCDIR/samples/display.sh"
-folder=$(mktemp -d) || exit 99
-trap 'display_end; rm -rf "$folder"' EXIT
-failed=0
-fail() {
-    echo "$1"
-    failed=1
-}
+. "$TOP_SRCDIR/tests/view.sh"
 
 # ---- words, before there is any display ----
 
-expect() { # CODE PATTERN ARGUMENT...: ends with this code, and says one line that fits
-    code=$1 pattern=$2
-    shift 2
-    "$view" "$@" >"$folder/said" 2>&1
-    got=$?
-    [ "$got" = "$code" ] || fail "scree-view $*: exit code $got instead of $code"
-    grep -q "$pattern" "$folder/said" || { cat "$folder/said"; fail "scree-view $*: does not say '$pattern'"; }
-    [ "$code" = 0 ] || [ "$(wc -l <"$folder/said")" = 1 ] || { cat "$folder/said"; fail "scree-view $*: not one line"; }
-}
 expect 0 '^  w  *wireframe' --help
 expect 2 'which terrain'
 expect 2 "no option '--sovs'" out --sovs 3
@@ -58,8 +31,8 @@ shoot() { # NAME OPTION...: a picture, and its tiles as a table
     name=$1
     shift
     "$view" "$folder/out" --screenshot "$folder/$name.png" --size 320x256 --trace-tiles "$folder/$name.csv" "$@" \
-        >"$folder/said" 2>&1 || { cat "$folder/said"; fail "no picture: scree-view $*"; }
-    [ ! -s "$folder/said" ] || { cat "$folder/said"; fail "scree-view is not quiet: $*"; }
+        >"$folder/said" 2>&1 || fail "no picture: scree-view $*"
+    [ ! -s "$folder/said" ] || fail "scree-view is not quiet: $*"
 }
 holes() { "$picture" count "$folder/$1.png" ff00ff; }
 # From the coarsest rung to the finest of a table.
@@ -131,15 +104,15 @@ done
 printf '0 -118.04 34.37 6000 30 -35\n1 -117.98 34.42 3500 60 -30\n' >"$folder/flight.txt"
 "$view" "$folder/out" --fly "$folder/flight.txt" --frames 12 --benchmark --trace "$folder/frames.csv" \
     --size 160x120 --memory 16 --pictures "$folder/pictures" --every 4 >"$folder/said" 2>&1 ||
-    { cat "$folder/said"; fail "no flight"; }
+    fail "no flight"
 [ "$(wc -l <"$folder/frames.csv")" = 13 ] || fail "the table of 12 frames has $(wc -l <"$folder/frames.csv") lines"
 [ "$(find "$folder/pictures" -name '*.png' | wc -l)" = 3 ] || fail "not three pictures of the flight"
-grep -q '^frames  *12 in' "$folder/said" || { cat "$folder/said"; fail "the benchmark does not tell of 12 frames"; }
+grep -q '^frames  *12 in' "$folder/said" || fail "the benchmark does not tell of 12 frames"
 expect 1 'line 1' "$folder/out" --fly "$folder/frames.csv" --benchmark
 
 # A stream that ends in its middle: the coarser mesh is drawn.
 tile=$(find "$folder/out/stream/2" -name '*.scree' | LC_ALL=C sort | head -n 1)
 head -c 9000 "$tile" >"$folder/cut" && cp "$folder/cut" "$tile"
 "$view" "$folder/out" --screenshot "$folder/cut.png" --size 320x256 --tolerance 0.5 >"$folder/said" 2>&1 ||
-    { cat "$folder/said"; fail "a stream that was cut off ends the program"; }
+    fail "a stream that was cut off ends the program"
 exit $failed
