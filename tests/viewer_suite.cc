@@ -213,9 +213,16 @@ void test_moves_smoothly(void) {
         for (const auto &[tile, level] : now) {
             auto was = before.find(tile);
             if (was != before.end() && std::fabs(was->second.first - level.first) > 24 * FRAME_S + 1e-9) jumps++;
-            if (was == before.end() && frame > 0) {
-                changes++; // a child begins at its base, a parent at its finest, but for this frame's step
-                if (level.first > 24 * FRAME_S + 1e-9 && level.first < level.second - 24 * FRAME_S - 1e-9) jumps++;
+            if (was != before.end() || frame == 0) continue;
+            changes++; // a child begins at its base, a parent at its finest, but for this frame's step
+            if (level.first > 24 * FRAME_S + 1e-9 && level.first < level.second - 24 * FRAME_S - 1e-9) jumps++;
+            for (const auto &[other, its] : before) { // and what it takes the place of had come there
+                const scree_tile_id &id = opened.set->id(tile), &old = opened.set->id(other);
+                int up = id.zoom - old.zoom, down = old.zoom - id.zoom;
+                bool was_above = up > 0 && id.x >> up == old.x && id.y >> up == old.y;
+                bool was_below = down > 0 && old.x >> down == id.x && old.y >> down == id.y;
+                if (was_above && its.first < its.second - 1e-9) jumps++;
+                if (was_below && its.first > 1e-9) jumps++;
             }
         }
         before = now;
