@@ -1,0 +1,39 @@
+/* A surface of triangles between points with heights: what a TIN file holds, or a triangulated cloud. Pure.
+ *
+ * Positions and heights are in the units of the points' own coordinate system, as with clouds (lod/cloud.h). */
+#ifndef SCREE_LOD_TIN_H
+#define SCREE_LOD_TIN_H
+
+#include "lod/cloud.h"
+
+struct tin {
+    struct scree_memory *memory; /* that pays for everything; set it, zero the rest */
+    struct cloud_point *points;
+    uint32_t *corners; /* three a triangle: numbers of points, counter-clockwise as seen from above */
+    uint32_t point_count, triangle_count;
+};
+
+/* Fine on a zeroed struct. */
+void tin_release(struct tin *tin);
+
+/* What tin_mend found and put right. */
+struct tin_mended {
+    uint32_t welded;  /* points in the place of another one */
+    uint32_t dropped; /* triangles without area, or that were there twice */
+    uint32_t turned;  /* triangles that had their corners clockwise */
+    uint32_t unused;  /* points that no triangle has as a corner */
+};
+
+/* Makes one surface of triangles as they come from a file: points in one place become one, triangles without any area
+ * and copies go, all are turned counter-clockwise, unused points go. What then is no surface over the plane is refused
+ * by SCREE_E_CORRUPT, with a text that says what is wrong, at which coordinates, and what to do (--grid takes the
+ * highest surface): an edge with more than two triangles, a vertical face, an overhang (triangles one above the other),
+ * coordinates that are no numbers, corners that are no points. Holes are fine, and parts that do not touch. */
+enum scree_status tin_mend(struct tin *tin, struct tin_mended *mended, struct scree_error *error);
+
+/* The Delaunay triangulation of a cloud; triangles with an edge longer than `longest_edge` are left out, and slivers
+ * along the hull. Of points in one place the lowest stays. */
+enum scree_status tin_from_cloud(const struct cloud *cloud, double longest_edge, struct tin *tin,
+                                 struct scree_error *error);
+
+#endif
