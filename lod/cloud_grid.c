@@ -1,17 +1,11 @@
 #include "lod/cloud_grid.h"
 
-#include "lod/delaunay.h"
-
 #include <math.h>
 #include <stdlib.h>
 
-#define POSITION_BITS 24
-#define MARGIN        (31 << POSITION_BITS) /* around the points: far corners hardly disturb the hull */
-#define HILBERT_BITS  (POSITION_BITS + 1)
-#define BOX_CORNERS   4
-#define CLOSE         1e-6 /* of a post's spacing: so far outside of a triangle still counts as on its edge */
-#define THINNEST      1e-9 /* of the points' bounds: less is a line */
-#define MOST_POSTS    2147483647.0
+#define CLOSE      1e-6 /* of a post's spacing: so far outside of a triangle still counts as on its edge */
+#define THINNEST   1e-9 /* of the points' bounds: less is a line */
+#define MOST_POSTS 2147483647.0
 
 /* ---- where posts lie ---- */
 
@@ -41,100 +35,6 @@ enum scree_status cloud_posts_choose(const struct cloud *cloud, double spacing, 
     return SCREE_OK;
 }
 
-/* ---- triangles ---- */
-
-struct ordered_point {
-    uint64_t key; /* along the Hilbert curve */
-    double z;
-    uint32_t index;
-};
-
-static int compare_ordered(const void *first, const void *second) {
-    const struct ordered_point *a = first, *b = second;
-    if (a->key != b->key) return a->key < b->key ? -1 : 1;
-    if (a->z != b->z) return a->z < b->z ? -1 : 1;
-    return (a->index > b->index) - (a->index < b->index);
-}
-
-static uint64_t hilbert(uint32_t x, uint32_t y) {
-    uint64_t key = 0;
-    for (uint32_t side = 1u << (HILBERT_BITS - 1); side > 0; side /= 2) {
-        uint32_t right = (x & side) != 0, up = (y & side) != 0;
-        key = 4 * key + ((3 * right) ^ up);
-        if (up) continue;
-        if (right) {
-            x = ~x;
-            y = ~y;
-        }
-        uint32_t swapped = x;
-        x = y;
-        y = swapped;
-    }
-    return key;
-}
-
-struct triangulation {
-    struct delaunay mesh;
-    uint32_t *source; /* of every point of the mesh behind the box's corners: its number in the cloud */
-};
-
-/* From coordinates to whole steps, a power of two each, so that what is round stays what it is. */
-struct rounding {
-    double west, south, step;
-};
-
-static struct delaunay_point rounded(const struct rounding *rounding, const struct cloud_point *point) {
-    return (struct delaunay_point){(int32_t)lrint((point->x - rounding->west) / rounding->step) + MARGIN,
-                                   (int32_t)lrint((point->y - rounding->south) / rounding->step) + MARGIN};
-}
-
-static enum scree_status insert_points(const struct cloud *cloud, const struct rounding *rounding,
-                                       const struct ordered_point *order, struct triangulation *result,
-                                       struct scree_error *error) {
-    struct delaunay *mesh = &result->mesh;
-    enum scree_status status = delaunay_reserve(mesh, cloud->count + BOX_CORNERS, error);
-    uint32_t triangle = 0;
-    for (uint32_t i = 0; i < cloud->count && status == SCREE_OK; i++) {
-        if (i > 0 && order[i].key == order[i - 1].key) continue; /* the lowest of a place comes first */
-        struct delaunay_point place = rounded(rounding, &cloud->points[order[i].index]);
-        triangle = delaunay_find(mesh, triangle, place);
-        result->source[mesh->point_count] = order[i].index;
-        triangle = delaunay_insert(mesh, triangle, place);
-    }
-    return status;
-}
-
-static enum scree_status triangulate(const struct cloud *cloud, struct triangulation *result,
-                                     struct scree_error *error) {
-    enum scree_status status = SCREE_OK;
-    double bounds[4];
-    cloud_bounds(cloud, bounds);
-    double width = bounds[2] - bounds[0], height = bounds[3] - bounds[1];
-    int exponent;
-    frexp(fmax(width, height), &exponent); /* below 2^exponent */
-    struct rounding rounding = {bounds[0], bounds[1], ldexp(1, exponent - POSITION_BITS)};
-    struct ordered_point *order =
-        scree_allocate(cloud->memory, cloud->count, sizeof *order, "the order of a cloud's points", error);
-    result->source = scree_allocate(cloud->memory, (size_t)cloud->count + BOX_CORNERS, sizeof *result->source,
-                                    "the sources of a triangulation's points", error);
-    if (order == NULL || result->source == NULL) {
-        status = error->status;
-        goto cleanup;
-    }
-    for (uint32_t i = 0; i < cloud->count; i++) {
-        struct delaunay_point place = rounded(&rounding, &cloud->points[i]);
-        uint64_t key = hilbert((uint32_t)(place.x - MARGIN), (uint32_t)(place.y - MARGIN));
-        order[i] = (struct ordered_point){key, cloud->points[i].z, i};
-    }
-    qsort(order, cloud->count, sizeof *order, compare_ordered);
-    status = delaunay_start(cloud->memory, (int32_t)lrint(width / rounding.step) + 2 * MARGIN,
-                            (int32_t)lrint(height / rounding.step) + 2 * MARGIN, &result->mesh, error);
-    if (status == SCREE_OK) status = insert_points(cloud, &rounding, order, result, error);
-cleanup:
-    scree_release(cloud->memory, order);
-    return status;
-}
-
 /* ---- heights ---- */
 
 struct corner {
@@ -162,7 +62,7 @@ static uint64_t sample_triangle(const struct corner corners[3], const struct clo
     const struct corner *a = &corners[0], *b = &corners[1], *c = &corners[2];
     double bx = b->x - a->x, by = b->y - a->y, cx = c->x - a->x, cy = c->y - a->y, area = bx * cy - by * cx;
     uint64_t covered = 0;
-    if (!(area > 0)) return 0; /* thinner than positions are rounded: others cover it */
+    if (area == 0) return 0; /* its neighbours cover it */
     double slope_x = ((b->z - a->z) * cy - (c->z - a->z) * by) / area;
     double slope_y = ((c->z - a->z) * bx - (b->z - a->z) * cx) / area;
     double south = fmin(a->y, fmin(b->y, c->y)), north = fmax(a->y, fmax(b->y, c->y));
@@ -175,40 +75,26 @@ static uint64_t sample_triangle(const struct corner corners[3], const struct clo
         int32_t right = (int32_t)fmin(floor(to + CLOSE), posts->columns - 1);
         for (int32_t column = left; column <= right; column++) {
             float *height = &heights[(size_t)row * (size_t)posts->columns + (size_t)column];
+            double z = fmin(fmax(a->z + slope_x * (column - a->x) + slope_y * (row - a->y), low), high);
             covered += isnan(*height);
-            *height = (float)fmin(fmax(a->z + slope_x * (column - a->x) + slope_y * (row - a->y), low), high);
+            *height = fmaxf(*height, (float)z); /* which takes a number before NaN */
         }
     }
     return covered;
 }
 
-static bool is_short(const struct cloud_point *a, const struct cloud_point *b, double longest) {
-    double dx = a->x - b->x, dy = a->y - b->y;
-    return dx * dx + dy * dy <= longest * longest;
-}
-
-enum scree_status cloud_sample(const struct cloud *cloud, const struct cloud_posts *posts, double longest_edge,
-                               float *heights, uint64_t *covered, struct scree_error *error) {
-    struct triangulation found = {.mesh = {.memory = cloud->memory}};
-    enum scree_status status = triangulate(cloud, &found, error);
+uint64_t tin_sample(const struct tin *tin, const struct cloud_posts *posts, float *heights) {
     size_t count = (size_t)posts->columns * (size_t)posts->rows;
+    uint64_t covered = 0;
     for (size_t i = 0; i < count; i++) heights[i] = NAN;
-    *covered = 0;
-    for (uint32_t t = 0; t < found.mesh.triangle_count && status == SCREE_OK; t++) {
-        const uint32_t *corner = found.mesh.triangles[t].corner;
-        if (corner[0] < BOX_CORNERS || corner[1] < BOX_CORNERS || corner[2] < BOX_CORNERS) continue;
-        const struct cloud_point *p[3];
+    for (size_t t = 0; t < tin->triangle_count; t++) {
         struct corner corners[3];
         for (int k = 0; k < 3; k++) {
-            p[k] = &cloud->points[found.source[corner[k]]];
-            corners[k] = (struct corner){(p[k]->x - posts->west) / posts->spacing,
-                                         (p[k]->y - posts->south) / posts->spacing, p[k]->z};
+            const struct cloud_point *point = &tin->points[tin->corners[3 * t + (size_t)k]];
+            corners[k] = (struct corner){(point->x - posts->west) / posts->spacing,
+                                         (point->y - posts->south) / posts->spacing, point->z};
         }
-        if (is_short(p[0], p[1], longest_edge) && is_short(p[1], p[2], longest_edge) &&
-            is_short(p[2], p[0], longest_edge))
-            *covered += sample_triangle(corners, posts, heights);
+        covered += sample_triangle(corners, posts, heights);
     }
-    delaunay_release(&found.mesh);
-    scree_release(cloud->memory, found.source);
-    return status;
+    return covered;
 }

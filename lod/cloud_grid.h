@@ -1,12 +1,8 @@
-/* From points to posts: the Delaunay triangulation of a cloud, sampled where the posts of a regular grid lie. Pure.
- *
- * The triangulation is exact, on positions rounded to 2^-24 of the longer side or finer; heights are interpolated
- * between the positions as they are. Of points in one place the lowest counts. The result depends on the points alone:
- * they are inserted along a Hilbert curve. Takes about 130 bytes a point at its peak, those of the cloud included. */
+/* From triangles to posts: a TIN, most often that of a cloud, sampled where the posts of a regular grid lie. Pure. */
 #ifndef SCREE_LOD_CLOUD_GRID_H
 #define SCREE_LOD_CLOUD_GRID_H
 
-#include "lod/cloud.h"
+#include "lod/tin.h"
 
 /* Posts at whole multiples of the spacing, so that the grids of neighbouring clouds fit together. */
 struct cloud_posts {
@@ -20,10 +16,8 @@ struct cloud_posts {
 enum scree_status cloud_posts_choose(const struct cloud *cloud, double spacing, struct cloud_posts *posts,
                                      struct scree_error *error);
 
-/* Heights of all posts, row by row from the south; NaN where a post is outside of all triangles, or in one that has an
- * edge longer than `longest_edge`. The outline is that of the convex hull but for slivers along it, at most half a per
- * cent as high as they are long. Counts the posts that have a height. */
-enum scree_status cloud_sample(const struct cloud *cloud, const struct cloud_posts *posts, double longest_edge,
-                               float *heights, uint64_t *covered, struct scree_error *error);
+/* Heights of all posts, row by row from the south; NaN where a post is outside of all triangles. Where triangles lie
+ * one above the other the highest counts; they may be turned either way. Returns how many posts have a height. */
+uint64_t tin_sample(const struct tin *tin, const struct cloud_posts *posts, float *heights);
 
 #endif

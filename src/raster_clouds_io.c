@@ -75,12 +75,12 @@ static enum scree_status read_clouds(const struct raster *raster, const struct r
     return status;
 }
 
+/* The cloud is released on the way. */
 static enum scree_status grid(const struct raster_options *options, struct cloud *cloud, struct gridded *gridded,
                               struct scree_error *error) {
     const struct cloud_options *wanted = &options->cloud;
     struct cloud_posts *posts = &gridded->posts;
     enum scree_status status = SCREE_OK;
-    uint64_t covered = 0;
     if (wanted->outliers > 0) status = cloud_drop_outliers(cloud, wanted->outliers, error);
     if (status == SCREE_OK && cloud->count == 0)
         status = scree_fail(error, SCREE_E_CORRUPT, "--outliers %g leaves no point", wanted->outliers);
@@ -91,13 +91,18 @@ static enum scree_status grid(const struct raster_options *options, struct cloud
     const struct scree_memory *memory = cloud->memory;
     if (count > (memory->limit_bytes - memory->used_bytes) / (2 * sizeof *gridded->heights)) /* here, and as GeoTIFF */
         return scree_fail(error, SCREE_E_LIMIT, "%d x %d posts are too many", (int)posts->columns, (int)posts->rows);
-    gridded->heights = scree_allocate(cloud->memory, count, sizeof *gridded->heights, "the posts of a cloud", error);
-    if (gridded->heights == NULL) return error->status;
     double longest = wanted->longest_edge > 0 ? wanted->longest_edge : EDGE_POSTS * posts->spacing;
-    status = cloud_sample(cloud, posts, longest, gridded->heights, &covered, error);
-    if (status == SCREE_OK && covered == 0)
+    struct tin tin = {.memory = cloud->memory};
+    status = tin_from_cloud(cloud, longest, &tin, error);
+    cloud_release(cloud);
+    if (status == SCREE_OK) {
+        gridded->heights = scree_allocate(tin.memory, count, sizeof *gridded->heights, "the posts of a cloud", error);
+        if (gridded->heights == NULL) status = error->status;
+    }
+    if (status == SCREE_OK && tin_sample(&tin, posts, gridded->heights) == 0)
         status = scree_fail(error, SCREE_E_CORRUPT,
                             "no post is within a triangle with edges of %g or less; name a longer --max-edge", longest);
+    tin_release(&tin);
     return status;
 }
 
@@ -149,7 +154,6 @@ enum scree_status raster_clouds_make(struct raster *raster, const struct raster_
         status = scree_fail(error, status, "%s: %s", name, why.text);
     }
     if (status != SCREE_OK) goto cleanup;
-    cloud_release(&cloud);
     snprintf(path, sizeof path, "/vsimem/scree-cloud-%p", (void *)raster);
     raster->cloud_path = strdup(path);
     if (raster->cloud_path == NULL)

@@ -33,7 +33,10 @@ static void scatter(struct cloud *cloud, uint32_t count, double side, double (*h
 static float *sample(const struct cloud *cloud, const struct cloud_posts *posts, double longest, uint64_t *covered) {
     float *heights = malloc(sizeof *heights * (size_t)posts->columns * (size_t)posts->rows);
     CU_ASSERT_PTR_NOT_NULL_FATAL(heights);
-    CU_ASSERT_EQUAL_FATAL(cloud_sample(cloud, posts, longest, heights, covered, NULL), SCREE_OK);
+    struct tin tin = {.memory = cloud->memory};
+    CU_ASSERT_EQUAL_FATAL(tin_from_cloud(cloud, longest, &tin, NULL), SCREE_OK);
+    *covered = tin_sample(&tin, posts, heights);
+    tin_release(&tin);
     return heights;
 }
 
@@ -219,15 +222,17 @@ static void test_no_memory(void) {
         struct scree_error error = {0};
         struct cloud_posts posts;
         float heights[441];
-        uint64_t covered;
+        struct tin tin = {.memory = &memory};
         status = SCREE_OK;
         for (int i = 0; i < 441 && status == SCREE_OK; i++)
             status = cloud_add(&cloud, (struct cloud_point){i % 21, i / 21, 0}, &error);
         if (status == SCREE_OK) status = cloud_drop_outliers(&cloud, 1, &error);
         if (status == SCREE_OK) status = cloud_thin(&cloud, 0.5, &error);
         if (status == SCREE_OK) status = cloud_posts_choose(&cloud, 1, &posts, &error);
-        if (status == SCREE_OK) status = cloud_sample(&cloud, &posts, 9, heights, &covered, &error);
+        if (status == SCREE_OK) status = tin_from_cloud(&cloud, 9, &tin, &error);
+        if (status == SCREE_OK) CU_ASSERT_EQUAL(tin_sample(&tin, &posts, heights), 441);
         failed += status == SCREE_E_MEMORY;
+        tin_release(&tin);
         cloud_release(&cloud);
         CU_ASSERT_EQUAL(memory.used_bytes, 0);
     }
