@@ -35,6 +35,9 @@ enum context_class {
     CONTEXT_CLASSES
 };
 
+/* "near", "railway", "hill", "forest"; "rest" for the last. */
+const char *context_class_name(enum context_class class);
+
 enum context_detail {
     CONTEXT_FILTERED,   /* heights of classes 1 and 2 are filtered by the Haar transform */
     CONTEXT_UNFILTERED, /* they are left as they are: the paper's Table 2, middle column */

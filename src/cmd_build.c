@@ -201,6 +201,8 @@ static int parse(int argc, char **argv, struct arguments *arguments) {
         int code = take(argc, argv, &at, arguments);
         if (code != EXIT_DONE) return code;
     }
+    struct scree_error error = {0};
+    if (!raster_arguments_check(&arguments->build.raster, &error)) return usage(error.text, "");
     int code = choose_method(arguments);
     if (code != EXIT_DONE || arguments->lists_methods) return code;
     if (arguments->build.raster.input_count == 0) return usage("which DEM? Name one raster or several", "");
@@ -216,6 +218,7 @@ static void tell_tile(void *context, uint32_t done, uint32_t in_all) {
 static void print_plan(const struct build *build, bool has_streams) {
     const struct raster_summary *summary = raster_summary(build->raster);
     int finest = build->lattice.finest_zoom;
+    if (summary->filtered != NULL) fprintf(stderr, "filtered: %s", summary->filtered);
     fprintf(stderr, "%.6g to %.6g m; %s\n", summary->height_min_m, summary->height_max_m, summary->datum);
     fprintf(stderr, "finest zoom %d, largest error there %.4g m\n", finest, build->ladder.tolerance_m[finest]);
     if (!has_streams) return;

@@ -242,6 +242,7 @@ static int parse(int argc, char **argv, struct arguments *arguments) {
         int code = take(argc, argv, &at, arguments);
         if (code != EXIT_DONE) return code;
     }
+    if (!raster_arguments_check(&options->build.raster, &error)) return usage(error.text, "");
     if (options->build.raster.input_count == 0) return usage("which DEM? Name one raster or several", "");
     if (options->build.out == NULL) return usage("where to? Name a folder with -o", "");
     if (options->method_count == 0) take_all_methods(options);

@@ -99,6 +99,8 @@ static int parse(int argc, char **argv, struct arguments *arguments) {
         int code = take(argc, argv, &at, arguments);
         if (code != EXIT_DONE) return code;
     }
+    struct scree_error error = {0};
+    if (!raster_arguments_check(&arguments->raster, &error)) return usage(error.text, "");
     if (arguments->raster.input_count == 0) return usage("which DEM? Name one raster or several", "");
     if (arguments->output == NULL) return usage("-o names the mesh to write", "");
     if (!mesh_file_is_known(arguments->output))

@@ -85,6 +85,8 @@ static int parse(int argc, char **argv, struct arguments *arguments) {
         if (in_inputs && at == argc && arguments->raster.input_count == 0)
             return usage("--against wants the rasters that the terrain was built from", "");
     }
+    struct scree_error error = {0};
+    if (!raster_arguments_check(&arguments->raster, &error)) return usage(error.text, "");
     if (arguments->path == NULL) return usage("which terrain? Name the folder that was built", "");
     arguments->raster.inputs = arguments->inputs;
     return EXIT_DONE;

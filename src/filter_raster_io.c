@@ -19,6 +19,13 @@
 #define MEMORY_FILE     "/vsimem/scree-filtered.tif"
 #define LOWEST_HEIGHT_M (-1e29) /* what is lower is FILTER_NO_HEIGHT_M */
 
+static char *copied(struct scree_memory *memory, const char *text, struct scree_error *error) {
+    const size_t length = strlen(text) + 1;
+    char *copy = scree_allocate(memory, length, 1, "words of a raster", error);
+    if (copy != NULL) memcpy(copy, text, length);
+    return copy;
+}
+
 static enum scree_status lay_out(struct scree_memory *memory, const char *name, const struct raster_summary *summary,
                                  struct filter_raster *raster, struct lattice *lattice, struct scree_error *error) {
     const double bytes = (double)FILTER_POST_BYTES * (double)summary->columns * (double)summary->rows;
@@ -27,7 +34,7 @@ static enum scree_status lay_out(struct scree_memory *memory, const char *name, 
         return scree_fail(
             error, SCREE_E_LIMIT,
             "%s: to filter %lld x %lld posts takes %.0f MB of memory; allow that with --filter-memory, or crop "
-            "with --te",
+            "with --te of scree filter",
             name, (long long)summary->columns, (long long)summary->rows, bytes / BYTES_A_MB + 1);
     enum scree_status status =
         lattice_local(summary->columns, summary->rows, summary->bounds[0], summary->bounds[1], summary->spacing_x,
@@ -39,11 +46,9 @@ static enum scree_status lay_out(struct scree_memory *memory, const char *name, 
     raster->south = lattice->south;
     raster->spacing_x = lattice->spacing_x;
     raster->spacing_y = lattice->spacing_y;
-    const size_t length = strlen(summary->crs_wkt) + 1;
-    raster->crs_wkt = scree_allocate(memory, length, 1, "the name of a CRS", error);
-    if (raster->crs_wkt == NULL) return SCREE_E_MEMORY;
-    memcpy(raster->crs_wkt, summary->crs_wkt, length);
-    return SCREE_OK;
+    raster->crs_wkt = copied(memory, summary->crs_wkt, error);
+    raster->attribution = copied(memory, summary->attribution, error);
+    return raster->crs_wkt != NULL && raster->attribution != NULL ? SCREE_OK : SCREE_E_MEMORY;
 }
 
 static enum scree_status read_heights(struct scree_memory *memory, const struct raster *from,
@@ -95,6 +100,7 @@ enum scree_status filter_raster_read(struct scree_memory *memory, const struct r
 void filter_raster_free(struct scree_memory *memory, struct filter_raster *raster) {
     scree_release(memory, raster->is_outside);
     scree_release(memory, raster->heights_m);
+    scree_release(memory, raster->attribution);
     scree_release(memory, raster->crs_wkt);
     *raster = (struct filter_raster){.heights_m = NULL};
 }
@@ -111,6 +117,8 @@ static bool describe(const struct filter_raster *raster, GDALDatasetH dataset) {
                            -raster->spacing_y};
     GDALRasterBandH band = GDALGetRasterBand(dataset, 1);
     bool fine = GDALSetGeoTransform(dataset, transform) == CE_None && GDALSetRasterUnitType(band, "metre") == CE_None;
+    if (raster->attribution[0] != '\0')
+        fine = fine && GDALSetMetadataItem(dataset, "TIFFTAG_COPYRIGHT", raster->attribution, NULL) == CE_None;
     if (raster->is_outside != NULL) fine = fine && GDALSetRasterNoDataValue(band, NODATA) == CE_None;
     if (raster->crs_wkt[0] == '\0') return fine;
     OGRSpatialReferenceH srs = OSRNewSpatialReference(NULL);
@@ -149,16 +157,23 @@ static bool fill_dataset(const struct filter_raster *raster, const float *height
     return fine;
 }
 
+/* The file in memory, whole; the caller has set the trap. */
+static bool make(const struct filter_raster *raster, const float *heights_m, const char *path, bool is_compressed,
+                 const struct raster_trap *trap) {
+    const char *const options[] = {"TILED=YES", "BIGTIFF=IF_SAFER", is_compressed ? "COMPRESS=DEFLATE" : NULL,
+                                   "PREDICTOR=3", NULL};
+    GDALDatasetH dataset = GDALCreate(GDALGetDriverByName("GTiff"), path, raster->columns, raster->rows, 1, GDT_Float32,
+                                      (CSLConstList)options);
+    const bool fine = dataset != NULL && describe(raster, dataset) && fill_dataset(raster, heights_m, dataset);
+    if (dataset != NULL) GDALClose(dataset);
+    return fine && trap->text[0] == '\0';
+}
+
 enum scree_status filter_raster_write(const struct filter_raster *raster, const float *heights_m, const char *path,
                                       struct scree_error *error) {
-    const char *const options[] = {"TILED=YES", "COMPRESS=DEFLATE", "PREDICTOR=3", "BIGTIFF=IF_SAFER", NULL};
     struct raster_trap trap;
     raster_trap_set(&trap);
-    GDALDatasetH dataset = GDALCreate(GDALGetDriverByName("GTiff"), MEMORY_FILE, raster->columns, raster->rows, 1,
-                                      GDT_Float32, (CSLConstList)options);
-    bool fine = dataset != NULL && describe(raster, dataset) && fill_dataset(raster, heights_m, dataset);
-    if (dataset != NULL) GDALClose(dataset);
-    fine = fine && trap.text[0] == '\0';
+    const bool fine = make(raster, heights_m, MEMORY_FILE, true, &trap);
     vsi_l_offset size_bytes = 0;
     const unsigned char *bytes = VSIGetMemFileBuffer(MEMORY_FILE, &size_bytes, FALSE);
     enum scree_status status = SCREE_OK;
@@ -167,6 +182,16 @@ enum scree_status filter_raster_write(const struct filter_raster *raster, const 
     else
         status = raster_trap_fail(&trap, path, error);
     VSIUnlink(MEMORY_FILE);
+    raster_trap_clear();
+    return status;
+}
+
+enum scree_status filter_raster_keep(const struct filter_raster *raster, const float *heights_m, const char *path,
+                                     const char *name, struct scree_error *error) {
+    struct raster_trap trap;
+    raster_trap_set(&trap);
+    enum scree_status status = SCREE_OK;
+    if (!make(raster, heights_m, path, false, &trap)) status = raster_trap_fail(&trap, name, error);
     raster_trap_clear();
     return status;
 }

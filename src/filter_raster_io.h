@@ -18,6 +18,7 @@ struct filter_raster {
     double west, south;    /* of the first post, in units of the CRS */
     double spacing_x, spacing_y;
     char *crs_wkt;       /* "": none */
+    char *attribution;   /* "": none */
     float *heights_m;    /* row by row from the south; there is one everywhere */
     uint8_t *is_outside; /* of each post whether that height is made up; NULL: none is */
 };
@@ -32,5 +33,10 @@ void filter_raster_free(struct scree_memory *memory, struct filter_raster *raste
 /* Writes heights of the raster's posts, whole or not at all: Float32, in metres, compressed. */
 enum scree_status filter_raster_write(const struct filter_raster *raster, const float *heights_m, const char *path,
                                       struct scree_error *error);
+
+/* Keeps the same as a file of GDAL's in memory (`path` begins with /vsimem/), not compressed; whoever asks for it
+ * removes it. `name` is for errors. */
+enum scree_status filter_raster_keep(const struct filter_raster *raster, const float *heights_m, const char *path,
+                                     const char *name, struct scree_error *error);
 
 #endif

@@ -1,6 +1,7 @@
 #include "src/raster_arguments.h"
 
 #include "src/cloud_arguments.h"
+#include "src/filter_arguments.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -70,8 +71,16 @@ enum argument_result raster_argument_take(int argc, char **argv, int *at, struct
         ++*at;
         return ARGUMENT_TAKEN;
     }
+    if (argument_is(option, "filter")) {
+        options->filter.is_wanted = true;
+        ++*at;
+        return ARGUMENT_TAKEN;
+    }
     while (which < known && !argument_is(option, with_value[which])) which++;
-    if (which == known) return cloud_argument_take(argc, argv, at, &options->cloud, error);
+    if (which == known) {
+        result = filter_argument_take(argc, argv, at, &options->filter, error);
+        return result != ARGUMENT_OTHER ? result : cloud_argument_take(argc, argv, at, &options->cloud, error);
+    }
     if (*at + 1 >= argc) return wrong(error, option, "a value");
     const char *value = argv[*at + 1];
     switch (which) {
@@ -91,4 +100,17 @@ enum argument_result raster_argument_take(int argc, char **argv, int *at, struct
     }
     *at += 2;
     return result;
+}
+
+bool raster_arguments_check(const struct raster_options *options, struct scree_error *error) {
+    const struct filter_options *filter = &options->filter;
+    if (filter->named != NULL && !filter->is_wanted) {
+        scree_fail(error, SCREE_E_ARGUMENT, "%s goes with --filter", filter->named);
+        return false;
+    }
+    if (filter->rules != NULL && filter->landuse == NULL) {
+        scree_fail(error, SCREE_E_ARGUMENT, "--rules goes with --landuse");
+        return false;
+    }
+    return true;
 }

@@ -12,8 +12,11 @@
 enum argument_result raster_argument_take(int argc, char **argv, int *at, struct raster_options *options,
                                           struct scree_error *error);
 
-/* Lines for a command's --help. */
-#define RASTER_ARGUMENTS_HELP                                                                                    \
+/* When all are taken: do they go together? If not, `error` says which ones do not. */
+bool raster_arguments_check(const struct raster_options *options, struct scree_error *error);
+
+/* Lines for a command's --help: what it takes to read rasters, and the same with what filters them. */
+#define RASTER_READING_HELP                                                                                      \
     "  -r METHOD            resampling where a raster has to be warped: near, bilinear (default), cubic, ...\n"  \
     "  -b N                 band, from 1\n"                                                                      \
     "  --s_srs CRS          the rasters' CRS, in place of their own; may name a vertical one (EPSG:4326+5773)\n" \
@@ -22,5 +25,11 @@ enum argument_result raster_argument_take(int argc, char **argv, int *at, struct
     "  --fill-distance N    interpolate voids up to so many posts wide, default 100; -1: never\n"                \
     "  --any-height         let heights beyond 20 km pass\n"                                                     \
     "  --te W S E N         crop to this extent, degrees or CRS units\n" CLOUD_ARGUMENTS_HELP
+
+#define RASTER_ARGUMENTS_HELP                                                                                  \
+    RASTER_READING_HELP                                                                                        \
+    "  --filter             filter what is read first, as scree filter does and with its options: --landuse, " \
+    "--rules,\n"                                                                                               \
+    "                       --spline-steps, --delta, --least, --variant, --thresholds, --filter-memory\n"
 
 #endif

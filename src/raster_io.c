@@ -365,8 +365,10 @@ static enum scree_status open_inputs(struct raster *raster, const struct raster_
     /* GeoTIFF 1.0 files name their vertical CRS only when asked. */
     bool is_set = CPLGetConfigOption("GTIFF_REPORT_COMPD_CS", NULL) != NULL;
     if (!is_set) CPLSetThreadLocalConfigOption("GTIFF_REPORT_COMPD_CS", "YES");
-    enum scree_status status = find_clouds(options, is_cloud, error);
-    for (int i = 0; i < options->input_count && status == SCREE_OK; i++)
+    const bool is_filtered = options->filter.is_wanted;
+    enum scree_status status =
+        is_filtered ? raster_filter_open(raster, options, error) : find_clouds(options, is_cloud, error);
+    for (int i = 0; i < options->input_count && !is_filtered && status == SCREE_OK; i++)
         status = open_input(raster, options, i, is_cloud, error);
     if (!is_set) CPLSetThreadLocalConfigOption("GTIFF_REPORT_COMPD_CS", NULL);
     free(is_cloud);
@@ -392,6 +394,7 @@ enum scree_status raster_open(const struct raster_options *options, struct raste
     raster->options.resampling = NULL;
     raster->options.source_srs = NULL;
     raster->options.cloud.named = NULL;
+    raster->options.filter = (struct filter_options){0};
     raster->source_srs = copied(options->source_srs);
     status = check_options(raster, options, &overshoot, error);
     if (status == SCREE_OK) status = open_inputs(raster, options, error);
@@ -425,9 +428,12 @@ void raster_free(struct raster *raster) {
     free(raster->inputs);
     if (raster->cloud_path != NULL) VSIUnlink(raster->cloud_path);
     free(raster->cloud_path);
+    if (raster->filter_path != NULL) VSIUnlink(raster->filter_path);
+    free(raster->filter_path);
     free(raster->source_srs);
     free(raster->summary.crs_wkt);
     free(raster->summary.datum);
+    free(raster->summary.filtered);
     free(raster->summary.attribution);
     free(raster);
 }

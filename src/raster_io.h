@@ -3,11 +3,13 @@
  * raster_open looks at the inputs; raster_place binds them to a lattice (mosaic and warp are GDAL's virtual rasters);
  * each worker then reads posts through a reader of its own. Nothing ever holds more than a window of the raster.
  * Inputs that are point clouds become one raster in memory first: they are one cloud together, which lies where the
- * first of them stands among the inputs. */
+ * first of them stands among the inputs. With --filter all inputs become one raster in memory, filtered; all else, the
+ * crop too, is done to that. */
 #ifndef SCREE_RASTER_IO_H
 #define SCREE_RASTER_IO_H
 
 #include "src/cloud_options.h"
+#include "src/filter_options.h"
 #include "src/lattice.h"
 #include <scree/error.h>
 
@@ -26,7 +28,8 @@ struct raster_options {
     double extent[4];  /* west, south, east, north in degrees or CRS units: crop */
     int fill_distance; /* how far voids are interpolated from their borders, in posts; 0: the default of 100; negative:
                         * no void is filled */
-    struct cloud_options cloud; /* how inputs that are point clouds become posts */
+    struct cloud_options cloud;   /* how inputs that are point clouds become posts */
+    struct filter_options filter; /* how all of it is filtered before anything else is done with it */
 };
 
 struct raster_summary {
@@ -39,6 +42,7 @@ struct raster_summary {
     double relief_margin_m;            /* how much resampling and datum shifts may add to either end */
     char *crs_wkt;                     /* of the lattice: EPSG:4326, or the raster's own; "" when there is none */
     char *datum;                       /* one line on heights: what was assumed or how they are transformed */
+    char *filtered;                    /* lines on what --filter did; NULL: it was not asked for */
     char *attribution;                 /* from the inputs' metadata; "" when they have none */
 };
 

@@ -20,7 +20,7 @@
 
 struct raster_input {
     char *name;
-    char *dataset; /* what GDAL opens: the name, or the raster that a cloud became */
+    char *dataset; /* what GDAL opens: the name, or a raster in memory that inputs became */
     int band;
     int columns, rows;
     bool has_geotransform;
@@ -79,6 +79,7 @@ struct raster {
     GDALResampleAlg resampling;
     int fill_distance;
     char *cloud_path;  /* the raster in memory that clouds became; NULL: none */
+    char *filter_path; /* the raster in memory that all inputs became, filtered; NULL: none */
     bool has_enclosed; /* some group has voids */
     int input_count, group_count;
     struct raster_input *inputs;
@@ -119,6 +120,11 @@ enum scree_status raster_input_scan(struct raster *raster, const struct raster_i
 
 /* raster_clouds_io.c: grids those of `inputs` that `is_cloud` marks, and makes raster->cloud_path. */
 enum scree_status raster_clouds_make(struct raster *raster, const struct raster_options *options, const bool *is_cloud,
+                                     struct scree_error *error);
+
+/* raster_filter_io.c: filters all inputs together, makes raster->filter_path and summary.filtered, and opens that as
+ * the raster's only input. What of the raster's options says how pixels are read is done with then, and taken out. */
+enum scree_status raster_filter_open(struct raster *raster, const struct raster_options *options,
                                      struct scree_error *error);
 
 /* raster_units_io.c: the factor from a unit's name to metres; false when nobody knows it. */

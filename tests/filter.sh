@@ -118,6 +118,65 @@ refuses 1 'holds no rule' dem.tif -o to.tif --landuse use.json --rules rules.txt
 refuses 1 'nothing.txt' dem.tif -o to.tif --landuse use.json --rules nothing.txt
 refuses 2 'goes with --landuse' dem.tif -o to.tif --rules rules.txt
 
+# build --filter, and verify: the same bytes as by way of a file, for what says how pixels are read (READ), how they
+# are filtered (HOW), and where terrain lies (WHERE); and what was built keeps its promises. GDAL words a CRS with the
+# members of its datum or without, depending on what it has seen before: that may differ.
+alike() { # FOLDER FOLDER
+    for file in $(cd "$1" && find . -type f); do
+        case $file in
+        *.json) grep -v '"crs_wkt"' "$1/$file" >mine && grep -v '"crs_wkt"' "$2/$file" >theirs && cmp mine theirs ;;
+        *) cmp "$1/$file" "$2/$file" ;;
+        esac || return 1
+    done
+    [ "$(cd "$1" && find . | sort)" = "$(cd "$2" && find . | sort)" ]
+}
+builds() { # READ HOW WHERE BUILD DEM
+    rm -rf one two
+    # shellcheck disable=SC2086 # words on purpose
+    {
+        "$scree" filter "$5" $1 $2 -o way.tif -q && "$scree" build way.tif $3 $4 -o two -q &&
+            "$scree" build "$5" $1 --filter $2 $3 $4 -o one -q
+        [ $? -eq 0 ] && alike one two && "$scree" verify one --against "$5" $1 --filter $2 $3
+    } >out 2>err || fail "build --filter: $*"
+}
+builds '' '' '' '--products terrain' dem.tif
+builds '' '--landuse use.json --delta 1 --variant 1 --spline-steps 2 --least 0.1' '' '--profile local' dem.tif
+sed '1,/^NODATA/!s/ 5/ 900/g' grid.asc >feet.asc
+echo '<PAMDataset><PAMRasterBand band="1"><UnitType>ft</UnitType></PAMRasterBand></PAMDataset>' >feet.asc.aux.xml
+builds '--s_srs EPSG:4326 -a_nodata 900 --fill-distance -1' '--delta 0.5' \
+    '--te 10.2 45.1 12 46.6 --nodata-height 3' '--products terrain' feet.asc
+"$TOP_BUILDDIR/tests/fractal_las" -o cloud.las --points 5000 --spacing-m 30 || fail 'no cloud'
+builds '--class 2 --grid 40' '--delta 3' '' '--profile local' cloud.las
+rm -rf one
+"$scree" build dem.tif --filter --landuse use.json -o one --products terrain --error 1e5 >out 2>err || fail 'no build'
+grep -q '^filtered: 600 x 301 posts; heights changed by RMS' err || fail 'build --filter does not tell'
+grep -q '^use.json: 1 lie outside of the raster$' err || fail 'build --filter does not tell of land use'
+"$scree" verify one --against dem.tif >out 2>err && fail 'the filter changed nothing, says verify'
+verb=build made=one
+refuses 2 '--delta goes with --filter' dem.tif -o one --delta 3
+refuses 2 '--rules goes with --filter' dem.tif -o one --landuse use.json --rules rules.txt
+refuses 2 '--rules goes with --landuse' dem.tif -o one --filter --rules rules.txt
+refuses 2 '1 to 9' dem.tif -o one --filter --spline-steps 10
+refuses 1 'dem.tif: to filter .* allow that with' dem.tif -o one --filter --filter-memory 4
+refuses 1 '^scree build: nothing.json' dem.tif -o one --filter --landuse nothing.json
+refuses 1 '^scree build: grid.asc: names no coordinate system' grid.asc -o one --filter
+refuses 1 '^scree build: dem.tif: lies outside of --te' dem.tif -o one --filter --te 5 5 6 6
+for verb in compare remesh; do refuses 2 '--least goes with --filter' dem.tif -o one --least 0.1; done
+"$scree" verify two --against dem.tif --variant 1 >out 2>err
+[ $? -eq 2 ] && grep -q 'goes with --filter' err || fail 'verify --variant without --filter'
+verb=filter made=to.tif
+
+# Whose data they are goes with them.
+names_surveyors() { grep -ao 'Surveyors of Nowhere' "$1" >out || fail "$1: the attribution is lost"; }
+cp dem.tif named.tif
+cat >named.tif.aux.xml <<EOG
+<PAMDataset><Metadata><MDI key="ATTRIBUTION">Surveyors of Nowhere</MDI></Metadata></PAMDataset>
+EOG
+does named.tif -o to.tif
+names_surveyors to.tif
+"$scree" build named.tif --filter -o one -q --products terrain --error 1e5 || fail 'no build'
+names_surveyors one/terrain/layer.json
+
 # The tables of triangles, and the picture.
 does dem.tif --report -q
 [ "$(wc -l <out)" -eq 21 ] || fail 'not the tables'
@@ -148,7 +207,9 @@ done
 refuses 2 'which DEM' -o to.tif
 refuses 2 '-o names' dem.tif
 refuses 2 'no option --frob' dem.tif -o to.tif --frob
-refuses 2 'missing behind --delta' dem.tif -o to.tif --delta
+refuses 2 '--delta wants metres' dem.tif -o to.tif --delta
+refuses 2 'missing behind -o' dem.tif -o
+refuses 2 'no option --filter' dem.tif -o to.tif --filter
 for value in 0 10 -1 x '' 1.5; do refuses 2 '1 to 9' dem.tif -o to.tif --spline-steps "$value"; done
 for value in -1 nan inf x ''; do
     refuses 2 'metres from 0' dem.tif -o to.tif --delta "$value"
