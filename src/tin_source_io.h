@@ -1,6 +1,6 @@
 /* Mesh files and point clouds that are kept as the triangles they are: from the files to a TIN on a lattice. */
-#ifndef SCREE_SRC_TIN_SOURCE_H
-#define SCREE_SRC_TIN_SOURCE_H
+#ifndef SCREE_SRC_TIN_SOURCE_IO_H
+#define SCREE_SRC_TIN_SOURCE_IO_H
 
 #include "lod/tin.h"
 #include "lod/tin_lattice.h"
