@@ -48,6 +48,10 @@ done
 osgconv "$tile" "$folder/mesh.osgt" >"$folder/log" 2>&1 || fail "osgconv does not read the finest rung"
 [ "$(vertices_of "$folder/mesh.osgt")" = "$(tail -n 1 "$folder/rungs" | cut -d' ' -f2)" ] ||
     fail "without options osgconv does not get the finest rung"
+rm -f "$folder/mesh.osgt"
+osgconv "$tile" "$folder/mesh.ive" >"$folder/log" 2>&1 && osgconv "$folder/mesh.ive" "$folder/mesh.osgt" >>"$folder/log" 2>&1
+[ "$(vertices_of "$folder/mesh.osgt")" = "$(tail -n 1 "$folder/rungs" | cut -d' ' -f2)" ] ||
+    fail "an .ive file does not hold the tile: $(cat "$folder/log")"
 
 head -c 700 "$tile" >"$folder/cut.scree"
 rm -f "$folder/mesh.osgt"

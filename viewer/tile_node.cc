@@ -1,5 +1,6 @@
 #include "viewer/tile_node.h"
 
+#include <osg/Geode>
 #include <osg/Geometry>
 #include <osg/MatrixTransform>
 
@@ -39,6 +40,9 @@ osg::ref_ptr<osg::Node> tile_node(scree_player *player, uint32_t rung) {
     snprintf(text, sizeof text, "rung %d, SVO %g m, max error %g m", (int)shown->rung, shown->svo_m,
              shown->max_error_m);
     transform->addDescription(text);
-    transform->addChild(geometry);
+    // Not the transform's own child: the writer of .ive files knows drawables only below a Geode.
+    osg::ref_ptr<osg::Geode> geode = new osg::Geode;
+    geode->addDrawable(geometry);
+    transform->addChild(geode);
     return transform;
 }
