@@ -3,6 +3,7 @@
 #include "src/raster_parts_io.h"
 
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -111,4 +112,23 @@ enum scree_status raster_crs_to_lonlat(PJ_CONTEXT *proj, const char *name, const
     proj_destroy(crs);
     proj_destroy(target);
     return status;
+}
+
+double raster_horizontal_metres(PJ_CONTEXT *proj, const char *crs_wkt) {
+    double metres = 1;
+    if (crs_wkt[0] == '\0') return metres;
+    PJ *crs = raster_crs_new(proj, crs_wkt);
+    if (crs != NULL && proj_get_type(crs) == PJ_TYPE_COMPOUND_CRS) {
+        PJ *horizontal = proj_crs_get_sub_crs(proj, crs, 0);
+        proj_destroy(crs);
+        crs = horizontal;
+    }
+    PJ *system = crs == NULL ? NULL : proj_crs_get_coordinate_system(proj, crs);
+    if (system != NULL) proj_cs_get_axis_info(proj, system, 0, NULL, NULL, NULL, &metres, NULL, NULL, NULL);
+    PJ_TYPE type = crs == NULL ? PJ_TYPE_UNKNOWN : proj_get_type(crs);
+    if (type == PJ_TYPE_GEOGRAPHIC_2D_CRS || type == PJ_TYPE_GEOGRAPHIC_3D_CRS)
+        metres *= 6378137.0; /* radians a unit: metres at the equator */
+    proj_destroy(system);
+    proj_destroy(crs);
+    return metres > 0 && isfinite(metres) ? metres : 1;
 }

@@ -274,25 +274,6 @@ static enum scree_status summarize_geodetic(struct raster *raster, struct scree_
     return summary->crs_wkt != NULL ? SCREE_OK : scree_fail(error, SCREE_E_MEMORY, "no memory for a CRS");
 }
 
-static double horizontal_metres(PJ_CONTEXT *proj, const char *crs_wkt) {
-    double metres = 1;
-    if (crs_wkt[0] == '\0') return metres;
-    PJ *crs = raster_crs_new(proj, crs_wkt);
-    if (crs != NULL && proj_get_type(crs) == PJ_TYPE_COMPOUND_CRS) {
-        PJ *horizontal = proj_crs_get_sub_crs(proj, crs, 0);
-        proj_destroy(crs);
-        crs = horizontal;
-    }
-    PJ *system = crs == NULL ? NULL : proj_crs_get_coordinate_system(proj, crs);
-    if (system != NULL) proj_cs_get_axis_info(proj, system, 0, NULL, NULL, NULL, &metres, NULL, NULL, NULL);
-    PJ_TYPE type = crs == NULL ? PJ_TYPE_UNKNOWN : proj_get_type(crs);
-    if (type == PJ_TYPE_GEOGRAPHIC_2D_CRS || type == PJ_TYPE_GEOGRAPHIC_3D_CRS)
-        metres *= 6378137.0; /* radians a unit: metres at the equator */
-    proj_destroy(system);
-    proj_destroy(crs);
-    return metres > 0 && isfinite(metres) ? metres : 1;
-}
-
 static enum scree_status summarize_local(struct raster *raster, PJ_CONTEXT *proj, struct scree_error *error) {
     struct raster_summary *summary = &raster->summary;
     const struct raster_group *group = &raster->groups[0];
@@ -324,7 +305,7 @@ static enum scree_status summarize_local(struct raster *raster, PJ_CONTEXT *proj
     summary->bounds[1] = south + first[1] * summary->spacing_y;
     summary->bounds[2] = west + last[0] * summary->spacing_x;
     summary->bounds[3] = south + last[1] * summary->spacing_y;
-    summary->metres_per_unit = horizontal_metres(proj, raster->inputs[0].crs_wkt);
+    summary->metres_per_unit = raster_horizontal_metres(proj, raster->inputs[0].crs_wkt);
     summary->crs_wkt = copied(raster->inputs[0].crs_wkt);
     return summary->crs_wkt != NULL ? SCREE_OK : scree_fail(error, SCREE_E_MEMORY, "no memory for a CRS");
 }
@@ -362,15 +343,13 @@ static enum scree_status open_inputs(struct raster *raster, const struct raster_
         free(is_cloud);
         return scree_fail(error, SCREE_E_MEMORY, "no memory for %d inputs", options->input_count);
     }
-    /* GeoTIFF 1.0 files name their vertical CRS only when asked. */
-    bool is_set = CPLGetConfigOption("GTIFF_REPORT_COMPD_CS", NULL) != NULL;
-    if (!is_set) CPLSetThreadLocalConfigOption("GTIFF_REPORT_COMPD_CS", "YES");
+    bool is_asked = raster_compound_ask();
     const bool is_filtered = options->filter.is_wanted;
     enum scree_status status =
         is_filtered ? raster_filter_open(raster, options, error) : find_clouds(options, is_cloud, error);
     for (int i = 0; i < options->input_count && !is_filtered && status == SCREE_OK; i++)
         status = open_input(raster, options, i, is_cloud, error);
-    if (!is_set) CPLSetThreadLocalConfigOption("GTIFF_REPORT_COMPD_CS", NULL);
+    raster_compound_leave(is_asked);
     free(is_cloud);
     return status;
 }

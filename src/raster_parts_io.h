@@ -100,6 +100,11 @@ void raster_trap_clear(void);
 /* Records what went wrong with `what`, in GDAL's words. */
 enum scree_status raster_trap_fail(const struct raster_trap *trap, const char *what, struct scree_error *error);
 
+/* GeoTIFF 1.0 files, and LAS files with their keys, name their vertical CRS only when asked: for this thread, until
+ * raster_compound_leave, which takes what raster_compound_ask said. */
+bool raster_compound_ask(void);
+void raster_compound_leave(bool is_asked);
+
 /* A PROJ context that prints nothing; NULL when out of memory. */
 PJ_CONTEXT *raster_proj_new(void);
 
@@ -171,6 +176,8 @@ enum scree_status raster_operation_find(PJ_CONTEXT *proj, const PJ *source, cons
                                         bool allow_ballpark, char **pipeline, char **description, char **missing_grid);
 /* The CRS of a WKT, without a bound transformation around it. */
 PJ *raster_crs_new(PJ_CONTEXT *proj, const char *crs_wkt);
+/* Metres of a horizontal unit; of degrees, at the equator. 1 where the CRS does not tell. */
+double raster_horizontal_metres(PJ_CONTEXT *proj, const char *crs_wkt);
 
 /* raster_enclosed_io.c: voids that are enclosed by data, on a coarse grid of the group's pixels. */
 enum scree_status raster_enclosed_make(struct raster_group *group, struct scree_error *error);

@@ -1,6 +1,7 @@
 /* What GDAL and PROJ would print is kept for our own error line instead. */
 #include "src/raster_parts_io.h"
 
+#include <cpl_conv.h>
 #include <cpl_error.h>
 #include <stdio.h>
 #include <string.h>
@@ -25,6 +26,16 @@ enum scree_status raster_trap_fail(const struct raster_trap *trap, const char *w
     size_t length = strlen(what); /* GDAL often names it, too */
     while (strncmp(text, what, length) == 0 && strncmp(text + length, ": ", 2) == 0) text += length + 2;
     return scree_fail(error, SCREE_E_IO, "%s: %s", what, text);
+}
+
+bool raster_compound_ask(void) {
+    if (CPLGetConfigOption("GTIFF_REPORT_COMPD_CS", NULL) != NULL) return false; /* somebody knows better */
+    CPLSetThreadLocalConfigOption("GTIFF_REPORT_COMPD_CS", "YES");
+    return true;
+}
+
+void raster_compound_leave(bool is_asked) {
+    if (is_asked) CPLSetThreadLocalConfigOption("GTIFF_REPORT_COMPD_CS", NULL);
 }
 
 PJ_CONTEXT *raster_proj_new(void) {
