@@ -211,8 +211,8 @@ static enum scree_status draw_all(struct reading *reading, const struct raster_t
         return status;
     }
     const uint8_t *is_outside = reading->raster->is_outside;
-    for (size_t post = 0; post < count && is_outside != NULL; post++)
-        if (is_outside[post]) posts->waters[post] = 0;
+    for (size_t post = 0; post < count; post++)
+        if ((is_outside != NULL && is_outside[post]) || posts->uses[post] & GROUND_BRIDGE) posts->waters[post] = 0;
     return SCREE_OK;
 }
 

@@ -17,7 +17,8 @@ struct landuse_posts {
 
 /* Reads all layers of `path`; another CRS is transformed to the raster's, and a missing one is taken to be that. A post
  * has a polygon's use where it lies inside; lines and points count for the posts nearest to them. A feature of water is
- * one level, of all posts that have data. `rules_path` NULL: the default rules. `posts` is to be freed in any case. */
+ * one level, of all posts that have data and no bridge. `rules_path` NULL: the default rules. `posts` is to be freed in
+ * any case. */
 enum scree_status landuse_read(struct scree_memory *memory, const char *path, const char *rules_path,
                                const struct filter_raster *raster, struct landuse_posts *posts,
                                struct scree_error *error);

@@ -1,15 +1,14 @@
-/* The filter on a city made by code: flat fields, a railway's embankment, a river, a bridge with its ramps, a heap and
- * a wood. What the paper's tables show is to show here: Goebbels and Pohle-Froehlich 2015, section 6. */
+/* The filter on a city made by code (tests/city_maker.h). What the paper's tables show is to show here: Goebbels and
+ * Pohle-Froehlich 2015, section 6. */
 #include "lod/context_filter.h"
 #include "lod/square_subdivision.h"
-#include "tests/fractal.h"
+#include "tests/city_maker.h"
 #include "tests/suites.h"
 
 #include <CUnit/CUnit.h>
 #include <math.h>
-#include <string.h>
 
-enum { SIDE = 5 * 128 + 1, POSTS = SIDE * SIDE, MOST_STEPS = 6 };
+enum { SIDE = CITY_SIDE, POSTS = CITY_POSTS, MOST_STEPS = 6 };
 
 #define EPSILON_M 0.2
 
@@ -17,42 +16,9 @@ static float heights_m[POSTS], filtered_m[POSTS];
 static uint8_t uses[POSTS];
 static uint32_t waters[POSTS];
 
-/* 1 within `half` posts, 0 beyond `half + slope`. */
-static double shelf(double distance, double half, double slope) {
-    return fmin(fmax(1 - (distance - half) / slope, 0), 1);
-}
-
-static double height_m(int32_t x, int32_t y, double roughness, uint8_t *use) {
-    const double river = fabs(x - 200 - 30 * sin(y / 60.0)), rails = fabs(0.6 * x + 0.8 * y - 480);
-    const double road = fabs(y - 330.0), bridge = fabs(x - 200 - 30 * sin(330 / 60.0));
-    const double heap = hypot(x - 500, y - 470), wood = hypot(x - 480, y - 130);
-    double z = 30 + 1.5 * sin(x / 70.0) * cos(y / 90.0);
-    z += 25 * shelf(heap, 25, 30) + fmin(roughness, 1) * 0.5 * shelf(heap, 40, 10);
-    z += 6 * shelf(wood, 20, 60) + 0.6 * roughness * shelf(wood, 70, 4);
-    if (wood < 70) *use |= GROUND_FOREST;
-    z += (36 - z) * shelf(rails, 3, 5);
-    if (rails < 8) *use |= GROUND_RAILWAY;
-    z += (27 - z) * shelf(river, 8, 5);
-    if (river < 9) *use |= GROUND_WATER;
-    const double deck_m = 30 + 6 * shelf(bridge, 18, 60);
-    z += (fmax(deck_m, z) - z) * shelf(road, 3, 2);
-    if (road < 4 && bridge < 18) *use = GROUND_BRIDGE;
-    if (road < 4 && bridge >= 18 && bridge < 80) *use |= GROUND_RAMP;
-    return z + 0.12 * roughness; /* the noise of a scanner */
-}
-
 static struct context_posts build_city(uint64_t seed) {
-    const struct fractal fractal = {.seed = seed};
-    memset(uses, 0, sizeof uses);
-    /* The fractal's finest octaves only: how far a post is from the mean of its neighbours. */
-    fractal_window(&fractal, 0, 0, SIDE, SIDE, filtered_m, SIDE);
-    for (int32_t y = 0; y < SIDE; y++)
-        for (int32_t x = 0; x < SIDE; x++) {
-            const int32_t post = y * SIDE + x, west = x > 0 ? post - 1 : post, east = x + 1 < SIDE ? post + 1 : post;
-            const double roughness = filtered_m[post] - (filtered_m[west] + filtered_m[east]) / 2;
-            heights_m[post] = (float)height_m(x, y, fmax(fmin(roughness, 2), -2), &uses[post]);
-            waters[post] = uses[post] & GROUND_WATER ? 1 : 0;
-        }
+    city_make(seed, heights_m, uses);
+    for (int32_t post = 0; post < POSTS; post++) waters[post] = uses[post] & GROUND_WATER ? 1 : 0;
     return (struct context_posts){heights_m, SIDE, SIDE, uses, waters, 1};
 }
 
@@ -133,11 +99,48 @@ static void what_people_look_at_stays(void) {
     CU_ASSERT(elsewhere_m > most_m[CONTEXT_RAILWAY]);
 }
 
+/* Even and odd crossings of the outline to the east of a place. */
+static bool is_inside(const struct city_outline *outline, double x, double y) {
+    bool inside = false;
+    for (size_t i = 0; i < outline->count; i++) {
+        const double *a = outline->corners[i], *b = outline->corners[(i + 1) % outline->count];
+        if ((a[1] > y) != (b[1] > y) && x < a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1])) inside = !inside;
+    }
+    return inside;
+}
+
+/* The outlines that other programs are given say the same as the posts; rounded ones are a little smaller. */
+static void outlines_are_where_posts_are(void) {
+    static struct city_outline outline;
+    uint32_t posts = 0, wrong = 0;
+    build_city(4);
+    for (int i = 0; i < CITY_OUTLINES; i++) {
+        city_outline(i, &outline);
+        CU_ASSERT_FATAL(outline.count <= CITY_CORNERS);
+        for (int32_t y = 7; y < SIDE; y += 17)
+            for (int32_t x = 3; x < SIDE; x += 3) {
+                const uint8_t use = uses[y * SIDE + x];
+                const bool hides = use & GROUND_BRIDGE && outline.use != GROUND_BRIDGE;
+                if (hides || !is_inside(&outline, x, y)) continue;
+                posts++;
+                wrong += !(use & outline.use);
+            }
+    }
+    uint32_t covered = 0;
+    for (int32_t y = 7; y < SIDE; y += 17)
+        for (int32_t x = 3; x < SIDE; x += 3)
+            for (uint8_t use = uses[y * SIDE + x]; use != 0; use = (uint8_t)(use & (use - 1))) covered++;
+    CU_ASSERT(posts > 500);
+    CU_ASSERT_EQUAL(wrong, 0);
+    CU_ASSERT(covered >= posts && covered - posts < posts / 100);
+}
+
 int suite_filter_city(void) {
     CU_pSuite suite = CU_add_suite("filtered city", NULL, NULL);
     if (suite == NULL) return 1;
     CU_ADD_TEST(suite, some_steps_are_best);
     CU_ADD_TEST(suite, tails_need_the_fewest);
     CU_ADD_TEST(suite, what_people_look_at_stays);
+    CU_ADD_TEST(suite, outlines_are_where_posts_are);
     return 0;
 }
