@@ -110,6 +110,20 @@ void mesh_release(struct scree_memory *memory, struct mesh *mesh) {
     memset(mesh, 0, sizeof *mesh);
 }
 
+enum scree_status mesh_copy(struct scree_memory *memory, const struct mesh *mesh, struct mesh *copy,
+                            struct scree_error *error) {
+    enum scree_status status = mesh_allocate(memory, mesh->vertex_count, mesh->triangle_count, copy, error);
+    if (status != SCREE_OK) return status;
+    copy->vertex_count = mesh->vertex_count;
+    copy->triangle_count = mesh->triangle_count;
+    copy->live_vertices = mesh->live_vertices;
+    copy->live_triangles = mesh->live_triangles;
+    memcpy(copy->vertices, mesh->vertices, (size_t)mesh->vertex_count * sizeof *mesh->vertices);
+    memcpy(copy->heights, mesh->heights, (size_t)mesh->vertex_count * sizeof *mesh->heights);
+    memcpy(copy->triangles, mesh->triangles, (size_t)mesh->triangle_count * sizeof *mesh->triangles);
+    return SCREE_OK;
+}
+
 /* Finds the half-edge from `from` to `to` among the outgoing ones of `from`. */
 static int32_t find_edge(const struct mesh *mesh, const int32_t *first, const int32_t *next, int32_t from, int32_t to,
                          int32_t *matches) {

@@ -73,6 +73,10 @@ enum scree_status mesh_allocate(struct scree_memory *memory, int32_t vertex_capa
                                 struct mesh *mesh, struct scree_error *error);
 void mesh_release(struct scree_memory *memory, struct mesh *mesh);
 
+/* A copy, with the same numbers; to be released like any mesh. */
+enum scree_status mesh_copy(struct scree_memory *memory, const struct mesh *mesh, struct mesh *copy,
+                            struct scree_error *error);
+
 /* Joins the half-edges of a mesh whose triangles' corners are set, and gives every vertex its outgoing edge.
  * SCREE_E_CORRUPT when an edge has more than one triangle on a side or a border vertex more than one open star. */
 enum scree_status mesh_connect(struct scree_memory *memory, struct mesh *mesh, struct scree_error *error);

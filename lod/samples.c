@@ -149,13 +149,17 @@ static inline void add_sample(const struct sample *sample, const struct plane *p
     error->sum_squares_m2 += distance * distance;
 }
 
-/* Extremes of some cells that lie in the triangle: exact, by whole numbers. */
+/* Samples of some cells that lie in the triangle: exact, by whole numbers. */
 static void scan_cells(const struct sample *sample, const struct sample *end, const struct plane *plane,
                        const struct sample *const corner[3], struct sums *error) {
     const struct sample *a = corner[0], *b = corner[1], *c = corner[2];
     for (; sample < end; sample++)
         if (sample_area2(a, b, sample) >= 0 && sample_area2(b, c, sample) >= 0 && sample_area2(c, a, sample) >= 0)
             add_sample(sample, plane, a, error);
+}
+
+static inline const struct sample *first_in(const struct samples *samples, int64_t cell) {
+    return samples->extremes + (samples->cell_first != NULL ? samples->cell_first[cell] : 2 * cell);
 }
 
 static struct sums over_extremes(const struct samples *samples, const struct plane *plane, const struct sample *a,
@@ -175,11 +179,12 @@ static struct sums over_extremes(const struct samples *samples, const struct pla
         low = high;
         high = cross_row(corner, (row + 1) * samples->cell_span);
         if (!range_of_row(samples, corner, row, &low, &high, &range)) continue;
-        const struct sample *cells = samples->extremes + 2 * (int64_t)row * samples->columns;
-        scan_cells(cells + 2 * range.first, cells + 2 * range.inner_first, plane, corner, &error);
-        for (int32_t i = 2 * range.inner_first; i < 2 * range.inner_last + 2; i++)
-            add_sample(cells + i, plane, a, &error);
-        scan_cells(cells + 2 * range.inner_last + 2, cells + 2 * range.last + 2, plane, corner, &error);
+        int64_t cells = (int64_t)row * samples->columns;
+        const struct sample *inner = first_in(samples, cells + range.inner_first);
+        const struct sample *inner_end = first_in(samples, cells + range.inner_last + 1);
+        scan_cells(first_in(samples, cells + range.first), inner, plane, corner, &error);
+        for (const struct sample *sample = inner; sample < inner_end; sample++) add_sample(sample, plane, a, &error);
+        scan_cells(inner_end, first_in(samples, cells + range.last + 1), plane, corner, &error);
     }
     return error;
 }

@@ -1,8 +1,8 @@
 /* The heights that a mesh is measured against, and the measuring. Pure.
  *
- * A tile of the finest zoom is measured against every post. A coarser tile keeps, for each of its cells, the lowest and
- * the highest finest post inside it, at its true position, so that summits and valley floors are never sampled away
- * while memory stays that of one tile.
+ * A tile of the finest zoom is measured against every post, or against every point of its TIN. A coarser tile keeps,
+ * for each of its cells, the lowest and the highest finest post inside it, at its true position, so that summits and
+ * valley floors are never sampled away while memory stays that of one tile.
  *
  * What is measured is what a globe draws: a triangle between three points of the ellipsoid is flat and lies below the
  * curved surface between them. So heights are compared less the drop of the ellipsoid below the tangent plane at the
@@ -27,9 +27,12 @@ struct samples {
     const float *posts;    /* cells of 1 step: (rows + 1) rows of `stride` heights; NULL: there are extremes */
     int32_t stride;
     const struct sample *extremes; /* 2 a cell, lowest then highest, row by row; NULL: there are posts */
-    const float *east_drop_m; /* ellipsoid's drop at one step to the east, at the rows + 1 borders of rows of cells;
-                                 NULL: the Earth is flat */
-    float north_drop_m;       /* the same to the north */
+    const uint32_t *cell_first; /* of each cell and one more, row by row: where its samples begin in `extremes`, which
+                                   then has any number of them a cell, each in one cell that it lies in or on; NULL:
+                                   there are two a cell */
+    const float *east_drop_m;   /* ellipsoid's drop at one step to the east, at the rows + 1 borders of rows of cells;
+                                   NULL: the Earth is flat */
+    float north_drop_m;         /* the same to the north */
     float rounding_steps;   /* how far the drawn position of a vertex may be off its lattice position, in x and in y */
     float rounding_limit_m; /* the most that this may add to an error: on a cliff the format itself moves heights by
                                metres, and keeping every post of it would not help */

@@ -5,6 +5,7 @@
 #include "lod/merge.h"
 #include "lod/quadric.h"
 #include "lod/tile_lines.h"
+#include "lod/tile_parts.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,18 +14,17 @@
 
 /* ---- heights ---- */
 
-static int32_t height_units(const struct tile *tile, double height_m) {
+int32_t tile_height_units(const struct tile *tile, double height_m) {
     return (int32_t)lround(height_m / tile->geometry.height_unit_m);
 }
 
-static void place_vertices(struct tile *tile) {
+void tile_place_vertices(struct tile *tile) {
     for (int32_t v = 0; v < tile->mesh.vertex_count; v++)
         tile->mesh.vertices[v].at.height_m = (float)(tile->mesh.heights[v] * tile->geometry.height_unit_m);
 }
 
-/* The beginning of every tile. */
-static enum scree_status start_tile(struct scree_memory *memory, const struct tile_geometry *geometry,
-                                    struct tile *tile, struct scree_error *error) {
+enum scree_status tile_begin(struct scree_memory *memory, const struct tile_geometry *geometry, struct tile *tile,
+                             struct scree_error *error) {
     memset(tile, 0, sizeof *tile);
     tile->memory = memory;
     tile->geometry = *geometry;
@@ -36,7 +36,7 @@ static enum scree_status start_tile(struct scree_memory *memory, const struct ti
     return SCREE_OK;
 }
 
-static struct samples samples_of(const struct tile *tile) {
+struct samples tile_own_samples(const struct tile *tile) {
     const struct tile_geometry *geometry = &tile->geometry;
     return (struct samples){.columns = extremes_cells(geometry->columns, geometry->cell_span),
                             .rows = extremes_cells(geometry->rows, geometry->cell_span),
@@ -104,7 +104,7 @@ static void start_line(struct tile *tile, enum tile_side side, int32_t step, con
                     stride);
 }
 
-static enum scree_status start_rest(struct tile *tile, struct scree_error *error) {
+enum scree_status tile_begin_rest(struct tile *tile, struct scree_error *error) {
     const struct tile_geometry *geometry = &tile->geometry;
     struct coarse_tile *rest = scree_allocate(tile->memory, 1, sizeof *rest, "a tile's remains", error);
     if (rest == NULL) return SCREE_E_MEMORY;
@@ -121,7 +121,7 @@ static enum scree_status start_rest(struct tile *tile, struct scree_error *error
                                rest->cell_span, &rest->slopes, error);
 }
 
-static enum scree_status start_simplifier(struct tile *tile, struct scree_error *error) {
+enum scree_status tile_begin_simplifier(struct tile *tile, struct scree_error *error) {
     struct simplify_options options = {.locked_step = tile->geometry.locked_step};
     return simplifier_start(tile->memory, &tile->mesh, &tile->samples, &options, &tile->simplifier, error);
 }
@@ -136,10 +136,10 @@ static enum scree_status use_posts(struct tile *tile, const struct tile_posts *p
         const float *row = posts->heights_m + (int64_t)y * posts->stride;
         memcpy(tile->posts + y * across, row, (size_t)across * sizeof *row);
         for (int32_t x = 0; x <= geometry->columns; x++)
-            tile->mesh.heights[y * across + x] = height_units(tile, row[x]);
+            tile->mesh.heights[y * across + x] = tile_height_units(tile, row[x]);
     }
-    place_vertices(tile);
-    tile->samples = samples_of(tile);
+    tile_place_vertices(tile);
+    tile->samples = tile_own_samples(tile);
     tile->samples.posts = tile->posts;
     tile->samples.stride = across;
     return SCREE_OK;
@@ -150,7 +150,7 @@ enum scree_status tile_from_posts(struct scree_memory *memory, const struct tile
     enum scree_status status;
     const float *heights_m = posts->heights_m;
     const int64_t last_row = (int64_t)geometry->rows * posts->stride;
-    if ((status = start_tile(memory, geometry, tile, error)) != SCREE_OK) return status;
+    if ((status = tile_begin(memory, geometry, tile, error)) != SCREE_OK) return status;
     if ((status = make_grid(tile, 1, error)) != SCREE_OK) goto failed;
     if ((status = use_posts(tile, posts, error)) != SCREE_OK) goto failed;
     start_line(tile, SIDE_SOUTH, 1, heights_m, 1);
@@ -160,10 +160,10 @@ enum scree_status tile_from_posts(struct scree_memory *memory, const struct tile
     status = slope_grid_allocate(memory, geometry->columns + 1, geometry->rows + 1, 1, &tile->slopes, error);
     if (status != SCREE_OK) goto failed;
     slope_grid_from_posts(&tile->slopes, heights_m, posts->stride, posts->east_m, posts->north_m);
-    if ((status = start_rest(tile, error)) != SCREE_OK) goto failed;
+    if ((status = tile_begin_rest(tile, error)) != SCREE_OK) goto failed;
     extremes_from_posts(heights_m, posts->stride, geometry->columns, geometry->rows, tile->rest->extremes);
     slope_grid_reduce(&tile->slopes, &tile->rest->slopes);
-    if ((status = start_simplifier(tile, error)) != SCREE_OK) goto failed;
+    if ((status = tile_begin_simplifier(tile, error)) != SCREE_OK) goto failed;
     return SCREE_OK;
 failed:
     tile_release(tile);
@@ -174,7 +174,7 @@ failed:
 
 static enum scree_status use_extremes(struct tile *tile, struct scree_error *error) {
     const struct tile_geometry *geometry = &tile->geometry;
-    tile->samples = samples_of(tile);
+    tile->samples = tile_own_samples(tile);
     tile->extremes = scree_allocate(tile->memory, 2 * (size_t)tile->samples.columns * (size_t)tile->samples.rows,
                                     sizeof *tile->extremes, "extremes", error);
     if (tile->extremes == NULL) return SCREE_E_MEMORY;
@@ -184,7 +184,7 @@ static enum scree_status use_extremes(struct tile *tile, struct scree_error *err
 }
 
 static enum scree_status finish_extremes(struct tile *tile, struct scree_error *error) {
-    enum scree_status status = start_rest(tile, error);
+    enum scree_status status = tile_begin_rest(tile, error);
     if (status != SCREE_OK) return status;
     extremes_reduce(tile->extremes, tile->samples.columns, tile->samples.rows, tile->rest->extremes);
     slope_grid_reduce(&tile->slopes, &tile->rest->slopes);
@@ -221,7 +221,7 @@ enum scree_status tile_from_children(struct scree_memory *memory, const struct t
     enum scree_status status;
     const struct scree_mesh *meshes[4];
     int32_t child_span = tile_child_span(children);
-    if ((status = start_tile(memory, geometry, tile, error)) != SCREE_OK) return status;
+    if ((status = tile_begin(memory, geometry, tile, error)) != SCREE_OK) return status;
     for (int i = 0; i < 4; i++) meshes[i] = children[i] != NULL ? &children[i]->mesh : NULL;
     if ((status = mesh_merge(memory, meshes, child_span, &tile->mesh, error)) != SCREE_OK) goto failed;
     if ((status = border_is_closed(tile, error)) != SCREE_OK) goto failed;
@@ -234,10 +234,10 @@ enum scree_status tile_from_children(struct scree_memory *memory, const struct t
         slope_grid_place(&children[i]->slopes, x / span, y / span, &tile->slopes);
     }
     if ((status = join_lines(tile, children, child_span, error)) != SCREE_OK) goto failed;
-    place_vertices(tile);
+    tile_place_vertices(tile);
     if ((status = finish_extremes(tile, error)) != SCREE_OK) goto failed;
     mesh_measure(&tile->mesh, &tile->samples);
-    if ((status = start_simplifier(tile, error)) != SCREE_OK) goto failed;
+    if ((status = tile_begin_simplifier(tile, error)) != SCREE_OK) goto failed;
     return SCREE_OK;
 failed:
     tile_release(tile);
@@ -258,7 +258,7 @@ static enum scree_status use_level(struct tile *tile, int32_t step, float height
             (struct sample){i / 2 % columns * step + step / 2, i / 2 / columns * step + step / 2, height_m};
     for (int32_t row = 0; tile->east_drop_m != NULL && row <= rows; row++)
         tile->east_drop_m[row] = tile->east_drop_m[row * cells];
-    tile->samples = samples_of(tile);
+    tile->samples = tile_own_samples(tile);
     tile->samples.columns = columns;
     tile->samples.rows = rows;
     tile->samples.cell_span = step;
@@ -266,7 +266,7 @@ static enum scree_status use_level(struct tile *tile, int32_t step, float height
     enum scree_status status =
         slope_grid_allocate(tile->memory, geometry->columns / geometry->cell_span + 1,
                             geometry->rows / geometry->cell_span + 1, geometry->cell_span, &tile->slopes, error);
-    if (status == SCREE_OK) status = start_rest(tile, error);
+    if (status == SCREE_OK) status = tile_begin_rest(tile, error);
     if (status != SCREE_OK) return status;
     struct coarse_tile *rest = tile->rest;
     for (int32_t i = 0; i < 2 * rest->cell_columns * rest->cell_rows; i++) {
@@ -280,14 +280,14 @@ enum scree_status tile_from_level(struct scree_memory *memory, const struct tile
                                   double height_m, struct tile *tile, struct scree_error *error) {
     enum scree_status status;
     float height = (float)height_m;
-    if ((status = start_tile(memory, geometry, tile, error)) != SCREE_OK) return status;
+    if ((status = tile_begin(memory, geometry, tile, error)) != SCREE_OK) return status;
     if ((status = make_grid(tile, step, error)) != SCREE_OK) goto failed;
-    for (int32_t v = 0; v < tile->mesh.vertex_count; v++) tile->mesh.heights[v] = height_units(tile, height_m);
+    for (int32_t v = 0; v < tile->mesh.vertex_count; v++) tile->mesh.heights[v] = tile_height_units(tile, height_m);
     for (int side = 0; side < SIDE_COUNT; side++) start_line(tile, (enum tile_side)side, step, &height, 0);
-    place_vertices(tile);
+    tile_place_vertices(tile);
     if ((status = use_level(tile, step, height, error)) != SCREE_OK) goto failed;
     mesh_measure(&tile->mesh, &tile->samples);
-    if ((status = start_simplifier(tile, error)) != SCREE_OK) goto failed;
+    if ((status = tile_begin_simplifier(tile, error)) != SCREE_OK) goto failed;
     return SCREE_OK;
 failed:
     tile_release(tile);
@@ -299,7 +299,7 @@ enum scree_status tile_lock(struct tile *tile, int64_t locked_step, struct scree
     const struct samples samples = tile->simplifier.samples; /* with its position rounding */
     simplifier_release(&tile->simplifier);
     tile->geometry.locked_step = locked_step;
-    enum scree_status status = start_simplifier(tile, error);
+    enum scree_status status = tile_begin_simplifier(tile, error);
     if (status != SCREE_OK) return status;
     tile->simplifier.options.codes = codes;
     tile->simplifier.samples = samples;
@@ -410,6 +410,7 @@ void tile_release(struct tile *tile) {
     coarse_tile_free(tile->memory, tile->rest);
     slope_grid_release(tile->memory, &tile->slopes);
     scree_release(tile->memory, tile->extremes);
+    scree_release(tile->memory, tile->cell_first);
     scree_release(tile->memory, tile->posts);
     scree_release(tile->memory, tile->east_drop_m);
     scree_release(tile->memory, tile->ahead.rungs);

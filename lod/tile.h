@@ -1,8 +1,9 @@
 /* A tile on its way from fine to coarse: made of posts or of its four children, taken down rung by rung, and handed up
  * to its parent. Pure.
  *
- * A tile of the finest zoom is measured against its posts, a coarser one against the extremes of its cells
- * (lod/samples.h). A tile at its finest rung is the union of its children at their coarsest, vertex for vertex. */
+ * A tile of the finest zoom is measured against its posts or its TIN's points, a coarser one against the extremes of
+ * its cells (lod/samples.h). A tile at its finest rung is the union of its children at their coarsest, vertex for
+ * vertex. */
 #ifndef SCREE_LOD_TILE_H
 #define SCREE_LOD_TILE_H
 
@@ -10,6 +11,7 @@
 #include "lod/border_collapse.h"
 #include "lod/simplify.h"
 #include "lod/slopes.h"
+#include "lod/tin_piece.h"
 
 /* Where a tile is and how its lattice steps become metres. */
 struct tile_geometry {
@@ -33,8 +35,9 @@ struct tile {
     struct ahead ahead;       /* rungs that must stay within reach */
     struct slope_grid slopes; /* at the corners of the cells */
     float *east_drop_m;
-    float *posts;             /* cell_span 1: else NULL */
-    struct sample *extremes;  /* cell_span > 1: else NULL */
+    float *posts;             /* of a tile of posts: else NULL */
+    struct sample *extremes;  /* else; of a tile of a TIN's, all of its samples */
+    uint32_t *cell_first;     /* of a tile of a TIN's: see struct samples; else NULL */
     struct coarse_tile *rest; /* what will be handed up, but for the mesh and the lines */
 };
 
@@ -69,6 +72,10 @@ struct tile_posts {
 enum scree_status tile_from_posts(struct scree_memory *memory, const struct tile_geometry *geometry,
                                   const struct tile_posts *posts, struct tile *tile, struct scree_error *error);
 
+/* A tile of the finest zoom out of a TIN. cell_span may be anything; about one point a cell is fast. */
+enum scree_status tile_from_tin(struct scree_memory *memory, const struct tile_geometry *geometry,
+                                const struct tin_piece *piece, struct tile *tile, struct scree_error *error);
+
 /* A tile without data, all posts at one height. It starts from a grid of `step` lattice steps, a power of two that
  * divides the tile; any step as fine as its border lines will keep gives the same borders. */
 enum scree_status tile_from_level(struct scree_memory *memory, const struct tile_geometry *geometry, int32_t step,
@@ -102,9 +109,9 @@ struct tile_rung {
     struct code_frame codes; /* of the written form; span 0: it is not written */
 };
 
-/* For a tile that still is its full grid of posts: the coming rungs are exactly these, the last a written
- * one. Every rung leaves the next ones within reach, so all of them are within their tolerances,
- * whatever their border lines drop. */
+/* For a tile that still is its full grid of posts, or all of its TIN: the coming rungs are exactly these, the last a
+ * written one. Every rung leaves the next ones within reach, so all of them are within their tolerances, whatever their
+ * border lines drop. */
 enum scree_status tile_look_ahead(struct tile *tile, const struct tile_rung *rungs, int count,
                                   struct scree_error *error);
 
