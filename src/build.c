@@ -49,21 +49,77 @@ static enum scree_status check_method(const struct build_options *options, const
     return status;
 }
 
-enum scree_status build_prepare(const struct build_options *options, struct build *build, struct scree_error *error) {
-    enum scree_status status = raster_open(&options->raster, &build->raster, error);
+const struct raster_summary *build_summary(const struct build *build) {
+    return build->is_tin ? &build->tin.summary : raster_summary(build->raster);
+}
+
+/* What is said about rasters only. */
+static enum scree_status check_tin(const struct build_options *options, struct scree_error *error) {
+    const char *what = options->method != NULL                 ? "--method wants"
+                       : options->fits                         ? "--fit wants"
+                       : options->max_zoom != ZOOM_FROM_SOURCE ? "--max-zoom is for"
+                       : options->raster.resampling != NULL    ? "-r is for"
+                                                               : NULL;
+    if (what == NULL) return SCREE_OK;
+    return scree_fail(error, SCREE_E_ARGUMENT, "%s: is kept as triangles, and %s posts; --grid M makes posts of it",
+                      options->raster.inputs[0], what);
+}
+
+static enum scree_status open_tin(const struct build_options *options, struct build *build, struct scree_error *error) {
+    enum scree_status status = check_tin(options, error);
+    if (status == SCREE_OK)
+        status = tin_source_open(&options->raster, options->block_points, options->raster.has_nodata_height,
+                                 &build->tin, error);
     if (status != SCREE_OK) return status;
-    const struct raster_summary *summary = raster_summary(build->raster);
-    if ((status = choose_lattice(options, summary, build, error)) != SCREE_OK) return status;
+    build->lattice = build->tin.lattice;
+    build->max_zoom = build->tin.leaf_zoom;
+    if (options->min_zoom <= build->max_zoom) return SCREE_OK;
+    return scree_fail(error, SCREE_E_ARGUMENT, "--min-zoom %d is finer than the finest zoom, %d", options->min_zoom,
+                      build->max_zoom);
+}
+
+static enum scree_status open_raster(const struct build_options *options, struct build *build,
+                                     struct scree_error *error) {
+    if (options->tin_option != NULL)
+        return scree_fail(error, SCREE_E_ARGUMENT,
+                          "%s: becomes posts; %s is for mesh files and point clouds that are kept as triangles",
+                          options->raster.inputs[0], options->tin_option);
+    enum scree_status status = raster_open(&options->raster, &build->raster, error);
+    return status == SCREE_OK ? choose_lattice(options, raster_summary(build->raster), build, error) : status;
+}
+
+/* A TIN's streams begin with all of it. */
+static struct ladder_options ladder_options_of(const struct build_options *options, const struct build *build) {
+    const struct raster_summary *summary = build_summary(build);
     struct ladder_options ladder = options->ladder;
-    double outside_m = options->raster.nodata_height_m;
-    double lowest_m = fmin(summary->height_min_m - summary->relief_margin_m, outside_m);
-    double highest_m = fmax(summary->height_max_m + summary->relief_margin_m, outside_m);
+    double lowest_m = fmin(summary->height_min_m - summary->relief_margin_m, build->outside_m);
+    double highest_m = fmax(summary->height_max_m + summary->relief_margin_m, build->outside_m);
+    bool has_wall = build->is_tin || options->raster.profile == PROFILE_GEODETIC;
     ladder.relief_m = highest_m - lowest_m;
-    if (options->raster.profile == PROFILE_GEODETIC) ladder.wall_m = fmax(highest_m - outside_m, outside_m - lowest_m);
+    if (has_wall) ladder.wall_m = fmax(highest_m - build->outside_m, build->outside_m - lowest_m);
     ladder.largest_height_m = fmax(fabs(lowest_m), fabs(highest_m));
+    if (build->is_tin) {
+        ladder.zooms_above = build->lattice.finest_zoom - build->max_zoom;
+        ladder.lossless = true;
+        ladder.quantum_m = build->tin.quantum_m;
+    }
+    if (ladder.finest_octaves == FINEST_OCTAVES_UNSAID)
+        ladder.finest_octaves =
+            build->is_tin ? ladder_octaves_of_tin(&build->lattice, &ladder) : DEFAULT_FINEST_OCTAVES;
+    return ladder;
+}
+
+enum scree_status build_prepare(const struct build_options *options, struct build *build, struct scree_error *error) {
+    enum scree_status status = SCREE_OK;
+    if (!options->needs_posts) status = tin_source_is_wanted(&options->raster, &build->is_tin, error);
+    if (status == SCREE_OK)
+        status = build->is_tin ? open_tin(options, build, error) : open_raster(options, build, error);
+    if (status != SCREE_OK) return status;
+    build->outside_m = build->is_tin ? build->tin.outside_m : options->raster.nodata_height_m;
+    struct ladder_options ladder = ladder_options_of(options, build);
     if ((status = ladder_make(&build->lattice, &ladder, &build->ladder, error)) != SCREE_OK) return status;
     if ((status = check_method(options, build, error)) != SCREE_OK) return status;
-    return raster_place(build->raster, &build->lattice, error);
+    return build->is_tin ? SCREE_OK : raster_place(build->raster, &build->lattice, error);
 }
 
 /* Adds up the tiles of each zoom, in their order; SVO grows towards the root. */
@@ -97,7 +153,7 @@ static void sum_up(struct build *build, int min_zoom, bool by_method) {
 static enum scree_status finish_terrain(const struct build_options *options, struct build *build,
                                         struct tile_store *store, struct scree_error *error) {
     sum_up(build, options->min_zoom, options->method != NULL);
-    const struct raster_summary *summary = raster_summary(build->raster);
+    const struct raster_summary *summary = build_summary(build);
     struct layer layer = {.lattice = &build->lattice,
                           .min_zoom = options->min_zoom,
                           .max_zoom = build->max_zoom,
@@ -106,7 +162,7 @@ static enum scree_status finish_terrain(const struct build_options *options, str
                           .attribution = summary->attribution,
                           .has_normals = !options->no_normals,
                           .is_gzipped = !options->plain,
-                          .nodata_height_m = options->raster.nodata_height_m,
+                          .nodata_height_m = build->outside_m,
                           .method = options->method != NULL ? options->method->method->name : NULL,
                           .zooms = build->zooms};
     memcpy(layer.bounds, summary->bounds, sizeof layer.bounds);
@@ -120,47 +176,65 @@ static enum scree_status finish_terrain(const struct build_options *options, str
 #define MOST_RUNGS (RUNGS_A_ZOOM * (MAX_ZOOM + 1 + MAX_FINEST_OCTAVES) + 2)
 
 /* The rungs of all tiles written, coarse to fine. */
-static uint32_t rungs_of(const struct build_options *options, const struct build *build, int32_t *first,
-                         double tolerance_m[MOST_RUNGS]) {
-    bool has_finest = build->max_zoom == build->lattice.finest_zoom;
+static uint32_t rungs_of(const struct build *build, int32_t *first, double tolerance_m[MOST_RUNGS]) {
+    bool has_finest = build->max_zoom == build->ladder.finest_zoom;
     int last = has_finest ? build->ladder.finest_rung : RUNGS_A_ZOOM * build->max_zoom;
     uint32_t count = 0;
-    *first = RUNGS_A_ZOOM * (options->min_zoom - 1);
+    *first = RUNGS_A_ZOOM * (build->stream_min_zoom - 1);
+    if (build->has_base && build->base_rung > *first) *first = build->base_rung;
     for (int rung = *first; rung <= last; rung++) tolerance_m[count++] = ladder_rung_tolerance_m(&build->ladder, rung);
     return count;
 }
 
 static enum scree_status finish_streams(const struct build_options *options, struct build *build,
                                         struct tile_store *store, struct scree_error *error) {
-    const struct raster_summary *summary = raster_summary(build->raster);
-    bool has_finest = build->max_zoom == build->lattice.finest_zoom;
+    const struct raster_summary *summary = build_summary(build);
+    bool has_finest = build->max_zoom == build->ladder.finest_zoom;
     double tolerance_m[MOST_RUNGS];
-    for (int zoom = options->min_zoom; zoom <= build->max_zoom; zoom++) {
+    for (int zoom = build->stream_min_zoom; zoom <= build->max_zoom; zoom++) {
         const struct pyramid_zoom *level = &build->pyramid.zooms[zoom];
         build->streams[zoom] = (struct stream_zoom){.tiles = level->stream_tiles.ids};
         for (uint32_t i = 0; i < level->stream_tiles.count; i++)
             stream_zoom_add(&build->streams[zoom], &level->streams[i]);
     }
     struct stream_manifest manifest = {.lattice = &build->lattice,
-                                       .min_zoom = options->min_zoom,
+                                       .min_zoom = build->stream_min_zoom,
                                        .max_zoom = build->max_zoom,
                                        .crs_wkt = summary->crs_wkt,
                                        .datum = summary->datum,
                                        .attribution = summary->attribution,
-                                       .nodata_height_m = options->raster.nodata_height_m,
+                                       .nodata_height_m = build->outside_m,
                                        .height_exponent = stream_height_exponent(&build->ladder),
-                                       .finest_octaves = has_finest ? options->ladder.finest_octaves : 0,
-                                       .is_lossless = has_finest && options->ladder.lossless,
+                                       .finest_octaves = has_finest ? ladder_finest_octaves(&build->ladder) : 0,
+                                       .is_lossless = has_finest && build->ladder.lossless,
                                        .rungs_per_increment =
                                            options->rungs_per_increment > 0 ? options->rungs_per_increment : 1,
                                        .tolerance_m = tolerance_m,
                                        .zooms = build->streams};
-    manifest.rung_count = rungs_of(options, build, &manifest.first_rung, tolerance_m);
+    manifest.rung_count = rungs_of(build, &manifest.first_rung, tolerance_m);
     memcpy(manifest.bounds, summary->bounds, sizeof manifest.bounds);
     char *text = scree_json_new(&manifest, error);
     if (text == NULL) return SCREE_E_MEMORY;
     enum scree_status status = tile_store_finish(store, "scree.json", text, error);
     free(text);
+    return status;
+}
+
+/* What a TIN's streams end with is known when all of their meshes have been made once. */
+static enum scree_status find_base(const struct build_options *options, const struct pyramid_options *pyramid,
+                                   struct build *build, struct scree_error *error) {
+    struct pyramid counted = {0};
+    struct pyramid_options counting = *pyramid;
+    counting.terrain = counting.stream = NULL;
+    counting.census = base_census(&options->base);
+    enum scree_status status = pyramid_build(&counting, &counted, error);
+    if (status == SCREE_OK) {
+        build->has_base = true;
+        build->base_rung = base_rung(&options->base, &build->ladder, &counted);
+        int zoom = base_zoom(&build->ladder, build->base_rung);
+        if (zoom > build->stream_min_zoom) build->stream_min_zoom = zoom;
+    }
+    pyramid_free(&counted);
     return status;
 }
 
@@ -176,7 +250,8 @@ enum scree_status build_run(const struct build_options *options, const struct py
     pyramid.lattice = &build->lattice;
     pyramid.ladder = &build->ladder;
     pyramid.raster = build->raster;
-    pyramid.nodata_height_m = options->raster.nodata_height_m;
+    pyramid.tin = build->is_tin ? &build->tin : NULL;
+    pyramid.nodata_height_m = build->outside_m;
     pyramid.min_zoom = options->min_zoom;
     pyramid.max_zoom = build->max_zoom;
     pyramid.no_normals = options->no_normals;
@@ -187,6 +262,11 @@ enum scree_status build_run(const struct build_options *options, const struct py
     pyramid.threads = options->threads;
     pyramid.terrain = terrain;
     pyramid.stream = stream;
+    build->stream_min_zoom = options->min_zoom;
+    if (build->is_tin && stream != NULL) status = find_base(options, &pyramid, build, error);
+    if (status != SCREE_OK) goto cleanup;
+    pyramid.has_base = build->has_base;
+    pyramid.base_rung = build->base_rung;
     status = pyramid_build(&pyramid, &build->pyramid, error);
     if (status == SCREE_OK && terrain != NULL) status = finish_terrain(options, build, terrain, error);
     if (status == SCREE_OK && stream != NULL) status = finish_streams(options, build, stream, error);
@@ -199,5 +279,6 @@ cleanup:
 void build_release(struct build *build) {
     pyramid_free(&build->pyramid);
     raster_free(build->raster);
+    tin_source_release(&build->tin);
     memset(build, 0, sizeof *build);
 }

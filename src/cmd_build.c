@@ -14,6 +14,7 @@
 
 #define EXIT_INTERRUPTED 130
 #define MAX_THREADS      256
+#define MAX_BLOCK        1000000
 
 static const char help[] =
     "Usage: scree build DEM... -o OUT [OPTION]...\n"
@@ -30,10 +31,14 @@ static const char help[] =
     "  --error-at Z=M       the same for one zoom; may be given for several\n"
     "  --products LIST      terrain, stream or terrain,stream (default); what is not named is left as it is\n"
     "  --finest-octaves N   how often the finest zoom halves its error below that of its static tile, 0 to 8,\n"
-    "                       default 2; both products are made of meshes that come from there\n"
+    "                       default 2, for TINs as often as their heights are exact; both products are made of meshes "
+    "that come from there\n"
     "  --lossless           streams end with every post; heights that are no multiple of the heights' step, which\n"
     "                       is a power of two of at most 1 m, are rounded to it\n"
     "  --rungs-per-increment N   rungs that each increment of a stream spans, default 1\n"
+    "  --block N            most points of a sub-block that a TIN is cut into, default 8192\n"
+    "  --base WHAT          mesh that a TIN's streams end with: 20% (default) of its triangles, 5000 of them, or the\n"
+    "                       first with an SVO of 0.5m\n"
     "  --fit                static tiles are fitted to the posts by least squares, within the same error: fewer\n"
     "                       triangles, and closer in the mean; streams stay as they are\n"
     "  --method NAME        static tiles by a method of the literature, without streams; list names them all\n"
@@ -121,6 +126,14 @@ static const char *take_valued(const char *name, const char *value, struct build
         return take_count(value, 1, SCREE_MAX_RUNGS, &build->rungs_per_increment)
                    ? NULL
                    : "--rungs-per-increment wants 1 to 256, not ";
+    if (strcmp(name, "--block") == 0)
+        return build->tin_option = name, take_count(value, 100, MAX_BLOCK, &build->block_points)
+                                             ? NULL
+                                             : "--block wants 100 to 1000000 points, not ";
+    if (strcmp(name, "--base") == 0)
+        return build->tin_option = name, base_parse(value, &build->base)
+                                             ? NULL
+                                             : "--base wants 20%, a number of triangles, or an SVO as 0.5m, not ";
     if (strcmp(name, "-j") == 0)
         return argument_integer(value, 1, MAX_THREADS, &build->threads) ? NULL : "-j wants 1 to 256 threads, not ";
     return "";
@@ -215,15 +228,29 @@ static void tell_tile(void *context, uint32_t done, uint32_t in_all) {
     progress_tell(context, done, in_all);
 }
 
+static void print_tin(const struct build *build) {
+    const struct tin_source *tin = &build->tin;
+    fprintf(stderr, "a TIN of %u points and %u triangles, in steps of %g, cut at zoom %d\n",
+            (unsigned)tin->placed.point_count, (unsigned)tin->placed.triangle_count, tin->lattice.spacing_x,
+            tin->leaf_zoom);
+    if (tin->mended.welded + tin->mended.dropped + tin->mended.turned + tin->mended.unused > 0)
+        fprintf(stderr, "mended: %u points welded, %u triangles dropped, %u turned, %u points without triangles\n",
+                (unsigned)tin->mended.welded, (unsigned)tin->mended.dropped, (unsigned)tin->mended.turned,
+                (unsigned)tin->mended.unused);
+}
+
 static void print_plan(const struct build *build, bool has_streams) {
-    const struct raster_summary *summary = raster_summary(build->raster);
-    int finest = build->lattice.finest_zoom;
+    const struct raster_summary *summary = build_summary(build);
+    int finest = build->ladder.finest_zoom;
+    if (build->is_tin) print_tin(build);
     if (summary->filtered != NULL) fprintf(stderr, "filtered: %s", summary->filtered);
     fprintf(stderr, "%.6g to %.6g m; %s\n", summary->height_min_m, summary->height_max_m, summary->datum);
     fprintf(stderr, "finest zoom %d, largest error there %.4g m\n", finest, build->ladder.tolerance_m[finest]);
     if (!has_streams) return;
     fprintf(stderr, "finest rung %d, %s%.4g m; heights in steps of %.4g m\n", build->ladder.finest_rung,
-            build->ladder.lossless ? "every post; the one before: " : "largest error there ",
+            build->is_tin            ? "the whole TIN; the one before: "
+            : build->ladder.lossless ? "every post; the one before: "
+                                     : "largest error there ",
             ladder_rung_tolerance_m(&build->ladder, build->ladder.finest_rung), build->ladder.height_unit_m);
 }
 
@@ -237,9 +264,9 @@ static void print_terrain(const struct build *build, int min_zoom) {
     }
 }
 
-static void print_streams(const struct build *build, int min_zoom) {
+static void print_streams(const struct build *build) {
     printf("zoom    tiles rungs         vertices                 bytes  max error m          SVO m\n");
-    for (int zoom = min_zoom; zoom <= build->max_zoom; zoom++) {
+    for (int zoom = build->stream_min_zoom; zoom <= build->max_zoom; zoom++) {
         const struct stream_zoom *sum = &build->streams[zoom];
         printf("%4d %8u %3d..%-3d %9llu..%-10llu %10llu %8.4g..%-8.4g %8.4g..%-8.4g\n", zoom, sum->tile_count,
                sum->coarsest.rung, sum->finest.rung, (unsigned long long)sum->coarsest.vertices,
@@ -250,9 +277,11 @@ static void print_streams(const struct build *build, int min_zoom) {
 
 static void print_result(const struct build *build, const struct build_options *options, double seconds) {
     if (!options->no_terrain) print_terrain(build, options->min_zoom);
-    if (!options->no_stream) print_streams(build, options->min_zoom);
-    double posts = (double)TILE_CELLS * TILE_CELLS * build->pyramid.zooms[build->lattice.finest_zoom].tiles.count;
-    printf("%s: %.1f s, %.2f million posts a second\n", options->out, seconds, posts * 1e-6 / seconds);
+    if (!options->no_stream) print_streams(build);
+    double posts = (double)TILE_CELLS * TILE_CELLS * build->pyramid.zooms[build->ladder.finest_zoom].tiles.count;
+    if (build->is_tin) posts = build->tin.placed.point_count;
+    printf("%s: %.1f s, %.2f million %s a second\n", options->out, seconds, posts * 1e-6 / seconds,
+           build->is_tin ? "points" : "posts");
 }
 
 static void print_methods(void) {
@@ -271,7 +300,8 @@ static int run(const struct arguments *arguments) {
     enum scree_status status = build_prepare(&arguments->build, &build, &error);
     if (status == SCREE_OK) {
         if (!arguments->quiet) print_plan(&build, !arguments->build.no_stream);
-        progress_start(&progress, "tiles", (double)TILE_CELLS * TILE_CELLS, arguments->quiet);
+        double posts = build.is_tin ? 0 : (double)TILE_CELLS * TILE_CELLS; /* of tiles of a TIN, who knows */
+        progress_start(&progress, "tiles", posts, arguments->quiet);
         struct pyramid_options watch = {.stop = &stop_asked, .progress = tell_tile, .progress_context = &progress};
         status = build_run(&arguments->build, &watch, &build, &error);
         double seconds = progress_end(&progress);
@@ -291,7 +321,7 @@ int command_build(int argc, char **argv) {
     for (int i = 1; i < argc; i++)
         if (strcmp(argv[i], "--help") == 0) return fputs(help, stdout) < 0 ? EXIT_FAILED : EXIT_DONE;
     struct arguments arguments = {
-        .build = {.max_zoom = ZOOM_FROM_SOURCE, .ladder = {.finest_octaves = DEFAULT_FINEST_OCTAVES}}};
+        .build = {.max_zoom = ZOOM_FROM_SOURCE, .ladder = {.finest_octaves = FINEST_OCTAVES_UNSAID}}};
     arguments.build.threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
     if (arguments.build.threads < 1) arguments.build.threads = 1;
     arguments.inputs = calloc((size_t)argc, sizeof *arguments.inputs);

@@ -292,6 +292,7 @@ int command_compare(int argc, char **argv) {
     struct arguments *arguments = calloc(1, sizeof *arguments);
     if (arguments != NULL) {
         arguments->compare.build.max_zoom = ZOOM_FROM_SOURCE;
+        arguments->compare.build.needs_posts = true;
         arguments->compare.seed = 1;
         arguments->compare.picture_px = DEFAULT_PICTURE_PX;
         arguments->inputs = calloc((size_t)argc, sizeof *arguments->inputs);

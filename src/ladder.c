@@ -1,12 +1,14 @@
 #include "src/ladder.h"
 
 #include <math.h>
+#include <stddef.h>
 
 #define STEPS_IN_TOLERANCE 16 /* heights are written so much finer than the tolerance */
 #define STEEPEST_TILE      4  /* relief of a tile in widths of it that height codes always have room for */
 #define HEIGHT_CODES       32767
 #define STEPS_IN_FINEST    4 /* the same for the finest rung; 8 costs 5 % more bytes of streams and saves no vertices */
 #define LARGEST_UNITS      0x1p24 /* heights are floats while tiles are simplified: all of them are exact */
+#define UNTOLD_OCTAVES     5      /* of a TIN whose heights are multiples of nothing */
 #define LOSSLESS_UNIT_M    1.0    /* so that sources in whole metres are kept to the last bit */
 
 static double power_of_two_below(double value) {
@@ -36,7 +38,7 @@ static enum scree_status set_tolerances(const struct lattice *lattice, const str
         lattice_steps_m(lattice, 0, &east_m, &north_m);
         root_m = DEFAULT_TOLERANCE_SHARE * fmax(east_m, north_m) * exp2(lattice->finest_zoom);
     }
-    for (int zoom = 0; zoom <= lattice->finest_zoom; zoom++) {
+    for (int zoom = 0; zoom <= ladder->finest_zoom; zoom++) {
         double tolerance_m = ldexp(root_m, -zoom);
         if (options->root_error_m <= 0) tolerance_m = fmax(tolerance_m, relief_step_m(lattice, options, 0, zoom));
         ladder->tolerance_m[zoom] = options->error_at_m[zoom] > 0 ? options->error_at_m[zoom] : tolerance_m;
@@ -87,6 +89,7 @@ static double height_unit_m(const struct ladder *ladder, const struct ladder_opt
     double finest_m = ladder_rung_tolerance_m(ladder, ladder->finest_rung);
     double unit_m = fmin(static_step_m, power_of_two_below(finest_m / STEPS_IN_FINEST));
     if (options->lossless) unit_m = fmin(unit_m, LOSSLESS_UNIT_M);
+    if (options->quantum_m > 0) unit_m = fmin(unit_m, power_of_two_below(options->quantum_m / 2));
     while (options->largest_height_m / unit_m > LARGEST_UNITS) unit_m *= 2;
     return unit_m;
 }
@@ -108,13 +111,22 @@ static enum scree_status check_steps(const struct ladder *ladder, const struct l
     return SCREE_OK;
 }
 
+int ladder_octaves_of_tin(const struct lattice *lattice, const struct ladder_options *options) {
+    struct ladder ladder;
+    struct ladder_options coarse = *options;
+    coarse.finest_octaves = 0;
+    if (options->quantum_m <= 0 || ladder_make(lattice, &coarse, &ladder, NULL) != SCREE_OK) return UNTOLD_OCTAVES;
+    double finest_m = STEPS_IN_FINEST * power_of_two_below(options->quantum_m / 2);
+    double octaves = floor(log2(ladder.tolerance_m[ladder.finest_zoom] / finest_m));
+    return (int)fmin(fmax(octaves, DEFAULT_FINEST_OCTAVES), MAX_FINEST_OCTAVES);
+}
+
 enum scree_status ladder_make(const struct lattice *lattice, const struct ladder_options *options,
                               struct ladder *ladder, struct scree_error *error) {
-    *ladder = (struct ladder){0};
+    int finest = lattice->finest_zoom - options->zooms_above;
+    *ladder = (struct ladder){.finest_zoom = finest};
     enum scree_status status = set_tolerances(lattice, options, ladder, error);
     if (status != SCREE_OK) return status;
-    int finest = lattice->finest_zoom;
-    ladder->finest_zoom = finest;
     ladder->finest_rung = RUNGS_A_ZOOM * (finest + options->finest_octaves) + (options->lossless ? 1 : 0);
     ladder->coarsest_rung = -RUNGS_A_ZOOM;
     ladder->lossless = options->lossless;

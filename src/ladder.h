@@ -24,6 +24,7 @@
 #define RUNGS_A_ZOOM           4
 #define DEFAULT_FINEST_OCTAVES 2
 #define MAX_FINEST_OCTAVES     8
+#define FINEST_OCTAVES_UNSAID  (-1) /* what is usual for the source: build.h */
 
 struct ladder_options {
     double root_error_m;             /* tolerance of zoom 0, halving with each zoom; 0: the default, which stops where
@@ -32,23 +33,34 @@ struct ladder_options {
     double relief_m;                 /* of the whole source */
     double wall_m;                   /* how far it stands above or below what surrounds it: one tile may have it all */
     double largest_height_m;         /* absolute */
+    int zooms_above;                 /* of the lattice's finest one lies the finest zoom of tiles: that of a TIN's */
     int finest_octaves;              /* how far the finest zoom goes on below its tolerance */
-    bool lossless;                   /* the finest rung is the full grid */
+    bool lossless;                   /* the finest rung is the full grid, or all of a TIN */
+    double quantum_m;                /* what heights are multiples of: they are told apart; 0: nothing */
 };
 
 struct ladder {
     double tolerance_m[MAX_ZOOM + 1];  /* by zoom, falling */
     double height_unit_m;              /* power of two: what meshes count heights in */
     int32_t border_step[MAX_ZOOM + 1]; /* height units: border heights of a zoom's static tiles are multiples of it */
-    int finest_zoom;
-    int finest_rung;   /* what tiles of the finest zoom begin at */
-    int coarsest_rung; /* what tiles of zoom 0 end at */
-    bool lossless;     /* the finest rung is the full grid: its tolerance is that of the rung before it */
+    int finest_zoom;                   /* of the tiles */
+    int finest_rung;                   /* what tiles of the finest zoom begin at */
+    int coarsest_rung;                 /* what tiles of zoom 0 end at */
+    bool lossless; /* the finest rung is the full grid: its tolerance is that of the rung before it */
 };
 
 /* The tolerance of a rung, finest_rung to coarsest_rung: what its mesh keeps to. Where the steps of static heights are
  * coarser than those of meshes, half a step is left at the finest zoom for rounding to them. */
 double ladder_rung_tolerance_m(const struct ladder *ladder, int rung);
+
+/* The octaves of the finest zoom below its static tile. */
+static inline int ladder_finest_octaves(const struct ladder *ladder) {
+    return ladder->finest_rung / RUNGS_A_ZOOM - ladder->finest_zoom;
+}
+
+/* How many octaves below its static tile a TIN of the lattice's finest zoom may go before heights are told apart more
+ * finely than they were measured. */
+int ladder_octaves_of_tin(const struct lattice *lattice, const struct ladder_options *options);
 
 /* SCREE_E_ARGUMENT when tolerances grow with the zoom, or the finest is below the step of the heights. */
 enum scree_status ladder_make(const struct lattice *lattice, const struct ladder_options *options,

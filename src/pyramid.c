@@ -1,7 +1,7 @@
 #include "src/pyramid.h"
 
 #include "src/method_build.h"
-#include "src/tile_build.h"
+#include "src/tin_source_io.h"
 
 #include <pthread.h>
 #include <stdlib.h>
@@ -46,11 +46,18 @@ struct worker {
 
 /* ---- which tiles there are ---- */
 
+/* What the data touch: one or two windows. */
+static int data_windows(const struct pyramid_options *options, struct lattice_window windows[2]) {
+    if (options->tin == NULL) return raster_windows(options->raster, windows);
+    windows[0] = options->tin->window;
+    return 1;
+}
+
 static enum scree_status list_tiles(const struct pyramid_options *options, struct pyramid *pyramid, int zoom,
                                     struct scree_error *error) {
     struct pyramid_zoom *level = &pyramid->zooms[zoom];
     struct lattice_window windows[2];
-    int window_count = raster_windows(options->raster, windows);
+    int window_count = data_windows(options, windows);
     enum scree_status status = SCREE_OK;
     for (int i = 0; i < window_count && status == SCREE_OK; i++) {
         struct tile_range range = lattice_tiles_touching(options->lattice, zoom, windows[i]);
@@ -71,13 +78,17 @@ static enum scree_status list_tiles(const struct pyramid_options *options, struc
     level->tiles.count = kept;
     level->statistics =
         scree_allocate(&pyramid->memory, kept, sizeof *level->statistics, "figures of all tiles", error);
-    return level->statistics != NULL ? SCREE_OK : SCREE_E_MEMORY;
+    if (level->statistics == NULL) return SCREE_E_MEMORY;
+    if (options->census == CENSUS_NONE) return SCREE_OK;
+    level->counts = scree_allocate(&pyramid->memory, (size_t)kept * TILE_MOST_RUNGS, sizeof *level->counts,
+                                   "sizes of all meshes", error);
+    return level->counts != NULL ? SCREE_OK : SCREE_E_MEMORY;
 }
 
 /* A root may be on the list without being touched by data. */
 static bool touched(const struct pyramid_options *options, struct tile_id id) {
     struct lattice_window windows[2];
-    int window_count = raster_windows(options->raster, windows);
+    int window_count = data_windows(options, windows);
     for (int i = 0; i < window_count; i++) {
         struct tile_range range = lattice_tiles_touching(options->lattice, id.zoom, windows[i]);
         if (id.x >= range.x_first && id.x <= range.x_last && id.y >= range.y_first && id.y <= range.y_last) return true;
@@ -136,7 +147,7 @@ static void tell_progress(struct work *work) {
     work->tiles_done++;
     if (options->progress != NULL)
         options->progress(options->progress_context, work->tiles_done,
-                          work->pyramid->zooms[options->lattice->finest_zoom].tiles.count);
+                          work->pyramid->zooms[options->ladder->finest_zoom].tiles.count);
     pthread_mutex_unlock(&work->lock);
 }
 
@@ -162,12 +173,17 @@ static enum scree_status finish_tile(struct work *work, struct tile_walk *walk, 
         status = tile_build_write(&work->plan, walk, options->terrain, &level->statistics[index], error);
     if (status == SCREE_OK) status = tile_build_hand_up(&work->plan, walk, &handed->mesh, error);
     if (status == SCREE_OK && walk->is_recorded) status = finish_stream(work, walk, error);
+    if (level->counts != NULL)
+        memcpy(level->counts + (size_t)index * TILE_MOST_RUNGS, walk->counts, sizeof walk->counts);
     tile_walk_release(walk);
     return status;
 }
 
+/* Streams of zooms whose finest rung is beyond the base would have nothing in them. */
 static bool is_recorded(const struct work *work, struct tile_id id) {
-    return work->options->stream != NULL && is_written(work, id);
+    return work->options->stream != NULL && is_written(work, id) &&
+           (!work->options->has_base || id.zoom == work->options->ladder->finest_zoom ||
+            RUNGS_A_ZOOM * id.zoom > work->options->base_rung);
 }
 
 /* The same of a tile that a method triangulates. */
@@ -255,7 +271,7 @@ static enum scree_status subtree(struct worker *worker, struct tile_id id, struc
     struct handed children[4] = {{NULL, NULL}};
     if (stopped(work)) return scree_fail(error, SCREE_E_INTERRUPTED, "interrupted");
     if (!touched(work->options, id)) return level_tile(work, id, memory, handed, error);
-    if (id.zoom == work->options->lattice->finest_zoom) return finest_tile(worker, id, memory, handed, error);
+    if (id.zoom == work->options->ladder->finest_zoom) return finest_tile(worker, id, memory, handed, error);
     for (int child = 0; child < 4 && status == SCREE_OK; child++)
         if (in_lattice(work->options, child_of(id, child)))
             status = subtree(worker, child_of(id, child), memory, &children[child], error);
@@ -364,7 +380,7 @@ static enum scree_status order_jobs(struct work *work, struct scree_error *error
 }
 
 static enum scree_status make_nodes(struct work *work, struct scree_error *error) {
-    int finest = work->options->lattice->finest_zoom;
+    int finest = work->options->ladder->finest_zoom;
     uint32_t wanted = (uint32_t)work->options->threads * JOBS_A_THREAD;
     while (work->job_zoom < finest && work->pyramid->zooms[work->job_zoom].tiles.count < wanted) work->job_zoom++;
     for (int zoom = 0; zoom <= work->job_zoom; zoom++) {
@@ -398,7 +414,7 @@ static enum scree_status run_workers(struct work *work, struct scree_error *erro
     enum scree_status status = workers != NULL ? SCREE_OK : SCREE_E_MEMORY;
     for (int i = 0; i < threads && status == SCREE_OK; i++) {
         workers[i].work = work;
-        status = raster_reader_new(work->options->raster, &workers[i].reader, error);
+        if (work->options->tin == NULL) status = raster_reader_new(work->options->raster, &workers[i].reader, error);
     }
     for (int i = 0; i < threads && status == SCREE_OK; i++) {
         workers[i].started = pthread_create(&workers[i].thread, NULL, run_worker, &workers[i]) == 0;
@@ -430,12 +446,13 @@ enum scree_status pyramid_build(const struct pyramid_options *options, struct py
     struct work work = {.options = options,
                         .pyramid = pyramid,
                         .plan = {options->lattice, options->ladder, options->nodata_height_m, options->no_normals,
-                                 options->plain, options->fits, options->rungs_per_increment, options->method}};
+                                 options->plain, options->fits, options->rungs_per_increment, options->method,
+                                 options->tin, options->census, options->has_base, options->base_rung}};
     memset(pyramid, 0, sizeof *pyramid);
     if (pthread_mutex_init(&work.lock, NULL) != 0) return scree_fail(error, SCREE_E_LIMIT, "no lock can be made");
-    for (int zoom = 0; zoom <= options->lattice->finest_zoom && status == SCREE_OK; zoom++)
+    for (int zoom = 0; zoom <= options->ladder->finest_zoom && status == SCREE_OK; zoom++)
         status = list_tiles(options, pyramid, zoom, error);
-    for (int zoom = 0; zoom <= options->lattice->finest_zoom && status == SCREE_OK; zoom++)
+    for (int zoom = 0; zoom <= options->ladder->finest_zoom && status == SCREE_OK; zoom++)
         status = list_streams(options, pyramid, zoom, error);
     if (status == SCREE_OK) status = make_nodes(&work, error);
     if (status == SCREE_OK) status = level_roots(&work, error);
@@ -452,6 +469,7 @@ void pyramid_free(struct pyramid *pyramid) {
     for (int zoom = 0; zoom <= MAX_ZOOM; zoom++) {
         scree_release(&pyramid->memory, pyramid->zooms[zoom].streams);
         scree_release(&pyramid->memory, pyramid->zooms[zoom].statistics);
+        scree_release(&pyramid->memory, pyramid->zooms[zoom].counts);
         tile_list_free(&pyramid->memory, &pyramid->zooms[zoom].stream_tiles);
         tile_list_free(&pyramid->memory, &pyramid->zooms[zoom].tiles);
     }

@@ -9,13 +9,14 @@
 #include "src/ladder.h"
 #include "src/raster_io.h"
 #include "src/scree_json.h"
-#include "src/terrain_tile.h"
+#include "src/tile_build.h"
 #include "src/tile_list.h"
 #include "src/tile_store_io.h"
 #include <scree/error.h>
 #include <signal.h>
 
 struct method_choice;
+struct tin_source;
 
 /* The tiles of a zoom that the data touch (and, at zoom 0, every root). Streams also have the tiles beside these that
  * share a parent with them: a viewer that replaces a tile by its children shall find all of them. */
@@ -23,12 +24,18 @@ struct pyramid_zoom {
     struct tile_list tiles, stream_tiles;
     struct terrain_tile_statistics *statistics; /* one a tile, filled by the build */
     struct stream_tile_figures *streams;        /* one a stream, filled by the build */
+    struct rung_count *counts; /* of a census: TILE_MOST_RUNGS for each of `tiles`, fine to coarse; those behind the
+                                  last have no vertices */
 };
 
 struct pyramid_options {
     const struct lattice *lattice;
     const struct ladder *ladder;
-    const struct raster *raster;
+    const struct raster *raster;  /* that the finest tiles are made of ... */
+    const struct tin_source *tin; /* ... or a TIN; the other is NULL */
+    enum census census;           /* counts in place of products */
+    bool has_base;                /* streams end with the rung base_rung; else with the coarsest */
+    int base_rung;
     double nodata_height_m;
     int min_zoom, max_zoom; /* tiles of other zooms are made but not written */
     bool no_normals, plain; /* without octvertexnormals; without gzip */

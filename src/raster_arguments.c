@@ -91,6 +91,7 @@ enum argument_result raster_argument_take(int argc, char **argv, int *at, struct
     case 2: options->source_srs = value; break;
     case 3: result = take_nodata(option, value, options, error); break;
     case 4:
+        options->has_nodata_height = true;
         if (!argument_number(value, &options->nodata_height_m)) result = wrong(error, option, "a number of metres");
         break;
     default:

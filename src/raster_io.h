@@ -23,6 +23,7 @@ struct raster_options {
     bool has_nodata;        /* `nodata` replaces what the inputs declare */
     double nodata;
     double nodata_height_m; /* height outside the data's footprint */
+    bool has_nodata_height; /* somebody has named it */
     bool any_height;        /* let heights beyond 20 km pass */
     bool has_extent;
     double extent[4];  /* west, south, east, north in degrees or CRS units: crop */

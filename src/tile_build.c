@@ -4,6 +4,7 @@
 #include "lod/tile_fit.h"
 #include "src/quantized_mesh.h"
 #include "src/stream_place.h"
+#include "src/tin_source_io.h"
 #include "stream/encode.h"
 #include "stream/stream_header.h"
 
@@ -13,21 +14,45 @@
 /* ---- from rung to rung ---- */
 
 static enum scree_status mark(struct tile_walk *walk, double max_error_m, struct scree_error *error) {
-    if (!walk->is_recorded) return SCREE_OK;
     const struct recording_rung rung = {
         .rung = walk->rung, .mmqe_m2 = (float)tile_mmqe_m2(&walk->tile), .max_error_m = (float)max_error_m};
     return recorder_mark(&walk->recorder, &rung, error);
 }
 
+/* The stream ends here, and the tile goes on: the recorder gets a mesh of its own to finish with. */
+static enum scree_status stop_recording(struct tile_walk *walk, struct scree_error *error) {
+    enum scree_status status = mesh_copy(walk->tile.memory, &walk->tile.mesh, &walk->base, error);
+    walk->tile.simplifier.options.observer = NULL;
+    walk->recorder.mesh = &walk->base;
+    return status;
+}
+
+/* What has come to a rung is told, as far as somebody wants to know. */
+static enum scree_status arrive(const struct tile_plan *plan, struct tile_walk *walk, double max_error_m,
+                                struct scree_error *error) {
+    enum scree_status status = SCREE_OK;
+    if (plan->census != CENSUS_NONE) {
+        struct rung_count *count = &walk->counts[walk->count_count++];
+        *count = (struct rung_count){.rung = walk->rung,
+                                     .vertices = (uint32_t)walk->tile.mesh.live_vertices,
+                                     .triangles = (uint32_t)walk->tile.mesh.live_triangles};
+        if (plan->census == CENSUS_OF_SVO) count->mmqe_m2 = tile_mmqe_m2(&walk->tile);
+    }
+    if (!walk->is_recorded || walk->recorder.mesh == &walk->base) return SCREE_OK;
+    status = mark(walk, max_error_m, error);
+    bool is_base = plan->has_base && walk->rung == plan->base_rung;
+    return status == SCREE_OK && is_base ? stop_recording(walk, error) : status;
+}
+
 /* From here on the tile's way is part of its stream. */
-static enum scree_status start_recording(struct tile_walk *walk, bool record, double max_error_m,
-                                         struct scree_error *error) {
-    if (!record) return SCREE_OK;
+static enum scree_status start_recording(const struct tile_plan *plan, struct tile_walk *walk, bool record,
+                                         double max_error_m, struct scree_error *error) {
+    if (!record) return arrive(plan, walk, max_error_m, error);
     enum scree_status status = recorder_start(walk->tile.memory, &walk->tile.mesh, &walk->recorder, error);
     if (status != SCREE_OK) return status;
     walk->is_recorded = true;
     walk->tile.simplifier.options.observer = &walk->recorder.observer;
-    return mark(walk, max_error_m, error);
+    return arrive(plan, walk, max_error_m, error);
 }
 
 static enum scree_status take_to(const struct tile_plan *plan, struct tile_walk *walk, int rung,
@@ -45,17 +70,16 @@ static enum scree_status walk_to(const struct tile_plan *plan, struct tile_walk 
     enum scree_status status = SCREE_OK;
     while (walk->rung > last_rung && status == SCREE_OK) {
         status = take_to(plan, walk, walk->rung - 1, error);
-        if (status == SCREE_OK && walk->is_recorded) status = mark(walk, tile_max_error_m(&walk->tile), error);
+        if (status == SCREE_OK)
+            status = arrive(plan, walk, walk->is_recorded ? tile_max_error_m(&walk->tile) : 0, error);
     }
     return status;
 }
 
-#define MOST_RUNGS (RUNGS_A_ZOOM * (MAX_FINEST_OCTAVES + 1) + 1) /* of a tile, the full grid apart */
-
 /* All rungs from `first` to the coarsest one of which static tiles are made. */
 static enum scree_status look_ahead(const struct tile_plan *plan, struct tile_walk *walk, int first,
                                     struct scree_error *error) {
-    struct tile_rung rungs[MOST_RUNGS];
+    struct tile_rung rungs[TILE_MOST_RUNGS];
     int count = 0, last = walk->id.zoom > 0 ? tile_coarsest_rung(walk->id) : 0;
     for (int rung = first; rung >= last; rung--) {
         int zoom = tile_zoom_ahead(walk->id, rung);
@@ -74,7 +98,7 @@ static enum scree_status take_grid_down(const struct tile_plan *plan, struct til
     walk->rung = ladder->finest_rung;
     if (status == SCREE_OK && !ladder->lossless) status = take_to(plan, walk, ladder->finest_rung, error);
     if (status == SCREE_OK && !ladder->lossless) status = simplifier_compact(&walk->tile.simplifier, error);
-    if (status == SCREE_OK) status = start_recording(walk, record, tile_max_error_m(&walk->tile), error);
+    if (status == SCREE_OK) status = start_recording(plan, walk, record, tile_max_error_m(&walk->tile), error);
     if (status == SCREE_OK) status = walk_to(plan, walk, RUNGS_A_ZOOM * walk->id.zoom, error);
     if (status == SCREE_OK) walk->max_error_m = tile_max_error_m(&walk->tile);
     return status;
@@ -107,11 +131,33 @@ static enum scree_status read_posts(const struct tile_plan *plan, struct tile_id
     return status;
 }
 
+/* The tile's piece of the TIN. */
+static enum scree_status cut_tin(const struct tile_plan *plan, struct tile_id id, struct scree_memory *memory,
+                                 struct tile *tile, struct scree_error *error) {
+    const struct tin_source *tin = plan->tin;
+    struct tile_drops drops;
+    struct tile_geometry geometry = tile_place_geometry(plan, id, &drops);
+    struct lattice_window window = lattice_tile_window(plan->lattice, id);
+    const struct tin_tile place = {.column = (int32_t)((window.x - tin->x) / tin->placed.tile_span),
+                                   .row = (int32_t)((window.y - tin->y) / tin->placed.tile_span),
+                                   .columns = window.columns,
+                                   .rows = window.rows,
+                                   .level_step = tile_place_level_step(plan, id, &geometry),
+                                   .wall_steps = tin->placed.wall_steps,
+                                   .outside_m = (float)plan->nodata_height_m};
+    struct tin_piece piece;
+    enum scree_status status = tin_piece_make(memory, &tin->placed, &place, &piece, error);
+    if (status == SCREE_OK) status = tile_from_tin(memory, &geometry, &piece, tile, error);
+    tin_piece_release(memory, &piece);
+    return status;
+}
+
 enum scree_status tile_build_finest(const struct tile_plan *plan, struct tile_id id, struct raster_reader *reader,
                                     bool record, struct scree_memory *memory, struct tile_walk *walk,
                                     struct scree_error *error) {
     begin(walk, id);
-    enum scree_status status = read_posts(plan, id, reader, memory, &walk->tile, error);
+    enum scree_status status = plan->tin != NULL ? cut_tin(plan, id, memory, &walk->tile, error)
+                                                 : read_posts(plan, id, reader, memory, &walk->tile, error);
     if (status == SCREE_OK) status = take_grid_down(plan, walk, record, error);
     if (status == SCREE_OK) status = fit(plan, walk, id.zoom, &walk->fitted, error);
     if (status != SCREE_OK) tile_walk_release(walk);
@@ -124,7 +170,7 @@ enum scree_status tile_build_level(const struct tile_plan *plan, struct tile_id 
     struct tile_geometry geometry = tile_place_geometry(plan, id, &drops);
     int32_t step = tile_place_level_step(plan, id, &geometry);
     int64_t locked_step = geometry.locked_step, half = lattice_tile_span(plan->lattice, id.zoom) / 2;
-    bool has_children = id.zoom < plan->lattice->finest_zoom;
+    bool has_children = id.zoom < plan->ladder->finest_zoom;
     begin(walk, id);
     /* like its neighbours it is, at its finest rung, what four children would be: their corners are there */
     if (has_children && (locked_step == 0 || half < locked_step)) geometry.locked_step = half;
@@ -133,7 +179,7 @@ enum scree_status tile_build_level(const struct tile_plan *plan, struct tile_id 
     if (status == SCREE_OK) status = tile_lock(&walk->tile, locked_step, error);
     if (status == SCREE_OK) walk->max_error_m = tile_max_error_m(&walk->tile);
     if (status == SCREE_OK) status = fit(plan, walk, id.zoom, &walk->fitted, error);
-    if (status == SCREE_OK) status = start_recording(walk, record, walk->max_error_m, error);
+    if (status == SCREE_OK) status = start_recording(plan, walk, record, walk->max_error_m, error);
     if (status != SCREE_OK) tile_walk_release(walk);
     return status;
 }
@@ -148,7 +194,7 @@ enum scree_status tile_build_parent(const struct tile_plan *plan, struct tile_id
         if (children[i] != NULL) walk->max_error_m = fmax(walk->max_error_m, children[i]->max_error_m);
     enum scree_status status = tile_from_children(memory, &geometry, children, &walk->tile, error);
     if (status == SCREE_OK && plan->fits) status = tile_fit_join_new(&walk->tile, children, &walk->fitted, error);
-    if (status == SCREE_OK) status = start_recording(walk, record, walk->max_error_m, error);
+    if (status == SCREE_OK) status = start_recording(plan, walk, record, walk->max_error_m, error);
     if (status != SCREE_OK) tile_walk_release(walk);
     return status;
 }
@@ -210,7 +256,8 @@ enum scree_status tile_build_hand_up(const struct tile_plan *plan, struct tile_w
     bool is_root = walk->id.zoom == 0;
     enum scree_status status = SCREE_OK;
     *coarse = NULL;
-    if (!is_root || walk->is_recorded) status = walk_to(plan, walk, tile_coarsest_rung(walk->id), error);
+    if (!is_root || walk->is_recorded || plan->census != CENSUS_NONE)
+        status = walk_to(plan, walk, tile_coarsest_rung(walk->id), error);
     if (status == SCREE_OK && !is_root) status = fit(plan, walk, walk->id.zoom - 1, &walk->tile.rest->fitted, error);
     return status == SCREE_OK && !is_root ? tile_hand_up_new(&walk->tile, coarse, error) : status;
 }
@@ -240,6 +287,7 @@ cleanup:
 
 void tile_walk_release(struct tile_walk *walk) {
     if (walk->is_recorded) recorder_release(&walk->recorder);
+    if (walk->tile.memory != NULL) mesh_release(walk->tile.memory, &walk->base);
     if (walk->tile.memory != NULL) fitted_tile_release(walk->tile.memory, &walk->fitted);
     tile_release(&walk->tile);
     walk->is_recorded = false;

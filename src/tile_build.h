@@ -13,6 +13,8 @@
 #include "src/tile_place.h"
 #include "src/tile_store_io.h"
 
+#define TILE_MOST_RUNGS (RUNGS_A_ZOOM * (MAX_FINEST_OCTAVES + 1) + 2)
+
 /* A tile on its way down its rungs. It must not move while it is recorded. */
 struct tile_walk {
     struct tile_id id;
@@ -22,6 +24,9 @@ struct tile_walk {
     struct fitted_tile fitted; /* for the static tile; empty where nothing is fitted */
     bool is_recorded;
     struct recorder recorder;
+    struct mesh base; /* of a stream that ends before the tile does */
+    int count_count;
+    struct rung_count counts[TILE_MOST_RUNGS]; /* of a census, fine to coarse */
 };
 
 /* A tile of the finest zoom. `record`: a stream will be asked for; recording begins at the finest rung. On failure

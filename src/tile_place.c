@@ -1,5 +1,7 @@
 #include "src/tile_place.h"
 
+#include "src/tin_source_io.h"
+
 #include <math.h>
 
 /* Corners of the tiles of this zoom stay at all zooms above it: over longer distances a globe is no height field over
@@ -8,12 +10,17 @@
 
 #define MARGIN 1 /* posts around a tile, for slopes on its border */
 
+int32_t tile_place_cells(const struct tile_plan *plan) {
+    return plan->tin != NULL ? plan->tin->cells : TILE_CELLS;
+}
+
 struct tile_geometry tile_place_geometry(const struct tile_plan *plan, struct tile_id id, struct tile_drops *drops) {
     const struct lattice *lattice = plan->lattice;
     struct lattice_window window = lattice_tile_window(lattice, id);
     struct tile_geometry geometry = {.columns = window.columns,
                                      .rows = window.rows,
-                                     .cell_span = (int32_t)(lattice_tile_span(lattice, id.zoom) / TILE_CELLS),
+                                     .cell_span =
+                                         (int32_t)(lattice_tile_span(lattice, id.zoom) / tile_place_cells(plan)),
                                      .height_unit_m = plan->ladder->height_unit_m};
     double top = (double)window.y + window.rows, equator = -lattice->south / lattice->spacing_y;
     lattice_steps_m(lattice, fmin(fmax(equator, (double)window.y), top), &geometry.east_m, &geometry.north_m);

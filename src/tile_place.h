@@ -8,6 +8,16 @@
 #include "src/raster_io.h"
 
 struct method_choice;
+struct tin_source;
+
+/* What a build without products is for: the sizes of all meshes. */
+enum census { CENSUS_NONE, CENSUS_OF_TRIANGLES, CENSUS_OF_SVO };
+
+struct rung_count {
+    int rung;
+    uint32_t vertices, triangles;
+    double mmqe_m2; /* CENSUS_OF_SVO */
+};
 
 /* What is the same for all tiles of a build. */
 struct tile_plan {
@@ -17,12 +27,19 @@ struct tile_plan {
     bool no_normals, plain, fits; /* see struct pyramid_options */
     uint32_t rungs_per_increment; /* of streams; 0: 1 */
     const struct method_choice *method;
+    const struct tin_source *tin; /* that tiles are made of; NULL: of a raster's posts */
+    enum census census;
+    bool has_base;
+    int base_rung; /* where streams end, if they have a base; or before it where the tile does */
 };
 
 /* The room that a tile's geometry points to. */
 struct tile_drops {
     float east_m[TILE_CELLS + 1];
 };
+/* Cells along the side of a whole tile. */
+int32_t tile_place_cells(const struct tile_plan *plan);
+
 struct tile_geometry tile_place_geometry(const struct tile_plan *plan, struct tile_id id, struct tile_drops *drops);
 
 /* The frame in which a tile of `zoom` will be written, as the tile `id` sees it: its own, or its parent's. */
