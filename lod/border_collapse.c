@@ -78,28 +78,41 @@ static void retriangulate(struct simplifier *simplifier, const struct star *star
     mesh_collapse(simplifier->mesh, &narrow, 0);
 }
 
-static enum scree_status remove_vertex(struct simplifier *simplifier, int32_t vertex, float tolerance_m,
-                                       struct scree_error *error) {
-    struct star star;
+/* Takes the star's vertex out in the way of the least error that leaves the rungs to come within reach; false, maybe
+ * after some flips, when there is none. */
+static bool take_out(struct simplifier *simplifier, struct star *star, float tolerance_m) {
     struct polygon polygon;
-    if (!mesh_star(simplifier->mesh, vertex, &star))
-        return scree_fail(error, SCREE_E_LIMIT, "a border vertex has more than %d triangles", MESH_MAX_DEGREE);
-    simplify_tell(simplifier, &star);
-    float first_m = fan_error_m(simplifier, &star, 0), last_m = fan_error_m(simplifier, &star, star.degree);
+    float first_m = fan_error_m(simplifier, star, 0), last_m = fan_error_m(simplifier, star, star->degree);
     float least_m = fminf(first_m, last_m);
     bool turned = false;
     if (least_m > tolerance_m) {
-        while (star.degree >= POLYGON_MAX && ear_cut(simplifier, &star)) continue;
-        if (star.degree >= 3 && star.degree < POLYGON_MAX) {
-            triangulate(simplifier, &star, &polygon);
-            turned = polygon.error_m[0][star.degree] < least_m;
+        while (star->degree >= POLYGON_MAX && ear_cut(simplifier, star)) continue;
+        if (star->degree >= 3 && star->degree < POLYGON_MAX) {
+            triangulate(simplifier, star, &polygon);
+            turned = polygon.error_m[0][star->degree] < least_m;
         }
     }
     if (turned)
-        retriangulate(simplifier, &star, &polygon);
+        retriangulate(simplifier, star, &polygon);
     else if (least_m < INFINITY)
-        mesh_collapse(simplifier->mesh, &star, first_m <= last_m ? 0 : star.degree);
-    else
+        mesh_collapse(simplifier->mesh, star, first_m <= last_m ? 0 : star->degree);
+    return turned || least_m < INFINITY;
+}
+
+static enum scree_status remove_vertex(struct simplifier *simplifier, int32_t vertex, float tolerance_m,
+                                       struct scree_error *error) {
+    struct star star;
+    if (!mesh_star(simplifier->mesh, vertex, &star))
+        return scree_fail(error, SCREE_E_LIMIT, "a border vertex has more than %d triangles", MESH_MAX_DEGREE);
+    simplify_tell(simplifier, &star);
+    bool is_out = take_out(simplifier, &star, tolerance_m);
+    if (!is_out) { /* beside a TIN's border a rung may be out of reach from the beginning */
+        const struct ahead *ahead = simplifier->options.ahead;
+        simplifier->options.ahead = NULL;
+        is_out = take_out(simplifier, &star, tolerance_m);
+        simplifier->options.ahead = ahead;
+    }
+    if (!is_out)
         return scree_fail(error, SCREE_E_LIMIT, "a border vertex with %d triangles cannot be taken out",
                           (int)star.degree);
     ear_measure(simplifier, &star);
