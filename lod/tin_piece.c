@@ -3,6 +3,7 @@
 #include <math.h>
 
 #define CLEARANCE 0.5 /* walls: how near a foot may come to an edge */
+#define LONGEST   4   /* walls: from foot to foot along an edge of the outline */
 #define WIDEST    2   /* walls: where one is wider, it gets one more foot */
 #define PASSES    16  /* at most, to do so */
 #define SHARPEST  0.5 /* cosine: at sharper corners the wall's foot is no farther away than at this one */
@@ -138,32 +139,50 @@ struct outward {
     double x, y; /* the sum of the outline's normals at a point */
 };
 
-/* The feet of the wall: one wall's width away from each point of the outline. */
+static enum scree_status put_foot(const struct tin_patch *patch, const struct tin_tile *tile, double x, double y,
+                                  struct tin_piece *piece, struct scree_error *error) {
+    if (!(x > 0 && y > 0 && x < tile->columns && y < tile->rows)) return SCREE_OK;
+    struct tin_post foot = {.x = (int32_t)lrint(x), .y = (int32_t)lrint(y)};
+    return put_outside(patch, tile, foot, CLEARANCE * tile->wall_steps, piece, error);
+}
+
+/* Feet along an edge of the outline, which count for its ends too. */
+static enum scree_status put_feet_along(const struct tin_patch *patch, const struct tin_tile *tile, uint32_t edge,
+                                        struct outward *outward, struct tin_piece *piece, struct scree_error *error) {
+    enum scree_status status = SCREE_OK;
+    uint32_t a = tin_patch_origin(patch, edge), b = tin_patch_target(patch, edge);
+    const struct tin_post *from = &patch->points[a], *to = &patch->points[b];
+    double dx = (double)to->x - from->x, dy = (double)to->y - from->y, length = sqrt(dx * dx + dy * dy);
+    if (length == 0) return SCREE_OK;
+    struct outward normal = {dy / length, -dx / length};
+    struct outward *const ends[2] = {&outward[a], &outward[b]};
+    for (int i = 0; i < 2; i++) {
+        ends[i]->x += normal.x;
+        ends[i]->y += normal.y;
+    }
+    double parts = ceil(length / (LONGEST * (double)tile->wall_steps));
+    for (double part = 1; part < parts && status == SCREE_OK; part++)
+        status = put_foot(patch, tile, from->x + part / parts * dx + tile->wall_steps * normal.x,
+                          from->y + part / parts * dy + tile->wall_steps * normal.y, piece, error);
+    return status;
+}
+
+/* The feet of the wall: one wall's width away from each point of the outline, and from long edges between them. */
 static enum scree_status put_feet(const struct tin_patch *patch, const struct tin_tile *tile, struct tin_piece *piece,
                                   struct scree_error *error) {
     enum scree_status status = SCREE_OK;
     struct outward *outward =
         scree_allocate(patch->memory, patch->point_count, sizeof *outward, "a tile's outline", error);
     if (outward == NULL) return error->status;
-    for (uint32_t edge = 0; edge < 3 * patch->triangle_count; edge++) {
-        if (patch->twins[edge] != TIN_PATCH_NONE) continue;
-        uint32_t a = tin_patch_origin(patch, edge), b = tin_patch_target(patch, edge);
-        double dx = (double)patch->points[b].x - patch->points[a].x;
-        double dy = (double)patch->points[b].y - patch->points[a].y, length = sqrt(dx * dx + dy * dy);
-        if (length == 0) continue;
-        outward[a].x += dy / length;
-        outward[a].y -= dx / length;
-        outward[b].x += dy / length;
-        outward[b].y -= dx / length;
-    }
+    for (uint32_t edge = 0; edge < 3 * patch->triangle_count && status == SCREE_OK; edge++)
+        if (patch->twins[edge] == TIN_PATCH_NONE) status = put_feet_along(patch, tile, edge, outward, piece, error);
     for (uint32_t p = 0; p < patch->point_count && status == SCREE_OK; p++) {
         double squared = outward[p].x * outward[p].x + outward[p].y * outward[p].y;
         if (squared < SHARPEST) continue; /* inside, or at the tip of a needle */
         /* two normals whose sum is s: their mitre is 2 s / |s|^2 wide */
         double reach = 2 * tile->wall_steps / fmax(squared, 4 * SHARPEST * SHARPEST);
-        struct tin_post foot = {.x = patch->points[p].x + (int32_t)lrint(reach * outward[p].x),
-                                .y = patch->points[p].y + (int32_t)lrint(reach * outward[p].y)};
-        status = put_outside(patch, tile, foot, CLEARANCE * tile->wall_steps, piece, error);
+        status = put_foot(patch, tile, patch->points[p].x + reach * outward[p].x,
+                          patch->points[p].y + reach * outward[p].y, piece, error);
     }
     scree_release(patch->memory, outward);
     return status;
