@@ -22,7 +22,7 @@ plot for [block in "I II III IV"] folder."/states.csv" \
      title "sub-block ".block
 unset multiplot
 
-# Three scales, above their triangles, pixel by pixel.
+# Three scales, and below them their triangles from nearby, pixel by pixel.
 if (pictures ne "yes") exit
 reset
 unset xtics
@@ -41,10 +41,10 @@ do for [i = 1:3] {
     set label 1 said at screen (i - 0.5) / 3, 0.977 center
     set bmargin at screen 340.0 / 712
     set tmargin at screen 680.0 / 712
-    plot folder."/scale".i."--contours.png" binary filetype=png with rgbimage
+    plot folder."/scale".i."-whole.png" binary filetype=png with rgbimage
     unset label 1
     set bmargin at screen 0
     set tmargin at screen 340.0 / 712
-    plot folder."/scale".i."--wireframe.png" binary filetype=png with rgbimage
+    plot folder."/scale".i."-near.png" binary filetype=png with rgbimage
 }
 unset multiplot

@@ -176,15 +176,18 @@ rm -r "$models"
 pictures=no
 if [ "${ISLAND_PICTURES:-yes}" = yes ] && [ -x "$build/scree-view" ] && display_begin; then
     scale=0
+    shot() { # NAME OPTION...
+        shot=$1
+        shift
+        "$build/scree-view" "$terrain" --svo "$svo" --no-morph --size 340x340 \
+            --screenshot "$folder/scale$scale-$shot.png" --trace-tiles "$folder/scale$scale.tiles" "$@"
+    }
     for svo in $(awk -F, 'NR > 1 { if ($3 > most) most = $3; if (!least || $3 < least) least = $3 }
             END { print 1.5 * least, sqrt(1.5 * least * most), most * 1.001 }' "$folder/rungs.csv"); do
         scale=$((scale + 1))
-        for look in --contours=5 '--wireframe --background 101820'; do
-            # shellcheck disable=SC2086 # several words
-            "$build/scree-view" "$terrain" --svo "$svo" --no-morph --size 340x340 $look \
-                --camera=112.00841,16.89669,1060,0,-90 --screenshot "$folder/scale$scale${look%%[= ]*}.png" \
-                --trace-tiles "$folder/scale$scale.tiles"
-        done
+        # The triangles from nearby, at the shore of the lagoon, where the sub-blocks meet.
+        shot near --camera=112.00859,16.89740,250,0,-90 --wireframe --background 101820
+        shot whole --camera=112.00841,16.89669,1060,0,-90 --contours=5
     done
     pictures=yes
 fi
