@@ -89,7 +89,7 @@ static double height_unit_m(const struct ladder *ladder, const struct ladder_opt
     double finest_m = ladder_rung_tolerance_m(ladder, ladder->finest_rung);
     double unit_m = fmin(static_step_m, power_of_two_below(finest_m / STEPS_IN_FINEST));
     if (options->lossless) unit_m = fmin(unit_m, LOSSLESS_UNIT_M);
-    if (options->quantum_m > 0) unit_m = fmin(unit_m, power_of_two_below(options->quantum_m / 2));
+    if (options->quantum_m > 0) unit_m = fmin(static_step_m, power_of_two_below(options->quantum_m / 2));
     while (options->largest_height_m / unit_m > LARGEST_UNITS) unit_m *= 2;
     return unit_m;
 }
@@ -116,7 +116,7 @@ int ladder_octaves_of_tin(const struct lattice *lattice, const struct ladder_opt
     struct ladder_options coarse = *options;
     coarse.finest_octaves = 0;
     if (options->quantum_m <= 0 || ladder_make(lattice, &coarse, &ladder, NULL) != SCREE_OK) return UNTOLD_OCTAVES;
-    double finest_m = STEPS_IN_FINEST * power_of_two_below(options->quantum_m / 2);
+    double finest_m = power_of_two_below(options->quantum_m / 2);
     double octaves = floor(log2(ladder.tolerance_m[ladder.finest_zoom] / finest_m));
     return (int)fmin(fmax(octaves, DEFAULT_FINEST_OCTAVES), MAX_FINEST_OCTAVES);
 }

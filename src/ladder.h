@@ -36,7 +36,7 @@ struct ladder_options {
     int zooms_above;                 /* of the lattice's finest one lies the finest zoom of tiles: that of a TIN's */
     int finest_octaves;              /* how far the finest zoom goes on below its tolerance */
     bool lossless;                   /* the finest rung is the full grid, or all of a TIN */
-    double quantum_m;                /* what heights are multiples of: they are told apart; 0: nothing */
+    double quantum_m;                /* what heights are multiples of, and no finer are they counted; 0: nothing */
 };
 
 struct ladder {
