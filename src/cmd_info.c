@@ -126,8 +126,8 @@ static void print_tile(const char *path, const struct decoded_tile *tile, uint64
     printf("%s: quantized-mesh-1.0 tile, %" PRIu64 " bytes\n", path, file_bytes);
     printf("  vertices   %" PRIu32 "\n  triangles  %" PRIu32 "\n", tile->vertex_count, tile->triangle_count);
     printf("  edges      %" PRIu32 " west, %" PRIu32 " south, %" PRIu32 " east, %" PRIu32 " north\n",
-           tile->edge_count[SIDE_WEST], tile->edge_count[SIDE_SOUTH], tile->edge_count[SIDE_EAST],
-           tile->edge_count[SIDE_NORTH]);
+           tile->edge_count[EDGE_WEST], tile->edge_count[EDGE_SOUTH], tile->edge_count[EDGE_EAST],
+           tile->edge_count[EDGE_NORTH]);
     printf("  heights    %.9g to %.9g m, in steps of %.6g m\n", tile->height_min_m, tile->height_max_m,
            decoded_step_m(tile));
     printf("  centre     %.3f %.3f %.3f\n", tile->center_m[0], tile->center_m[1], tile->center_m[2]);
@@ -161,7 +161,7 @@ static void put_tile(struct json_text *json, const char *path, const struct deco
     json_integer(json, tile->triangle_count);
     json_key(json, "edges");
     json_open_line(json, '[');
-    for (int side = 0; side < SIDE_COUNT; side++) json_integer(json, tile->edge_count[side]);
+    for (int side = 0; side < EDGE_COUNT; side++) json_integer(json, tile->edge_count[side]);
     json_close(json, ']');
     json_key(json, "height_min_m");
     json_number(json, tile->height_min_m);

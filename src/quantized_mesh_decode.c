@@ -86,7 +86,7 @@ static enum scree_status read_triangles(struct scree_memory *memory, struct scre
 
 static enum scree_status read_edges(struct scree_memory *memory, struct scree_reader *reader, size_t index_bytes,
                                     struct decoded_tile *tile, struct scree_error *error) {
-    for (int side = 0; side < SIDE_COUNT; side++) {
+    for (int side = 0; side < EDGE_COUNT; side++) {
         uint32_t count = scree_read_u32(reader);
         if (reader->ran_out || !scree_reader_holds(reader, count, index_bytes)) return cut(reader, "edge lists", error);
         tile->edge_count[side] = count;
@@ -165,7 +165,7 @@ cleanup:
 
 void decoded_tile_free(struct scree_memory *memory, struct decoded_tile *tile) {
     scree_release(memory, tile->normals);
-    for (int side = SIDE_COUNT - 1; side >= 0; side--) scree_release(memory, tile->edges[side]);
+    for (int side = EDGE_COUNT - 1; side >= 0; side--) scree_release(memory, tile->edges[side]);
     scree_release(memory, tile->corners);
     scree_release(memory, tile->h);
     scree_release(memory, tile->v);

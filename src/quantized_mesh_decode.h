@@ -15,7 +15,7 @@
 
 #define DECODED_TOP 32767 /* the largest position and height code */
 
-enum tile_side { SIDE_WEST, SIDE_SOUTH, SIDE_EAST, SIDE_NORTH, SIDE_COUNT }; /* in the order of the format */
+enum edge_side { EDGE_WEST, EDGE_SOUTH, EDGE_EAST, EDGE_NORTH, EDGE_COUNT }; /* in the order of the format */
 
 struct decoded_tile {
     double center_m[3]; /* ECEF in the geodetic profile; so are the next two */
@@ -27,8 +27,8 @@ struct decoded_tile {
     uint16_t *u, *v, *h;        /* vertex_count codes each: 0..DECODED_TOP, west-east, south-north, low-high */
     uint32_t *corners;          /* 3 * triangle_count vertex indices */
     uint32_t used_vertex_count; /* the triangles name the vertices below this one and no others */
-    uint32_t edge_count[SIDE_COUNT];
-    uint32_t *edges[SIDE_COUNT]; /* vertex indices */
+    uint32_t edge_count[EDGE_COUNT];
+    uint32_t *edges[EDGE_COUNT]; /* vertex indices */
     uint8_t *normals;            /* 2 bytes a vertex, oct-encoded; NULL: none */
 
     bool has_water_mask, has_metadata;

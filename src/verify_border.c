@@ -5,11 +5,11 @@
 #include <string.h>
 
 static bool is_on_side(const struct decoded_tile *tile, const struct tile_frame *frame, uint32_t vertex,
-                       enum tile_side side, uint16_t *at) {
-    *at = side == SIDE_WEST || side == SIDE_EAST ? tile->v[vertex] : tile->u[vertex];
-    if (side == SIDE_WEST) return tile->u[vertex] == 0;
-    if (side == SIDE_SOUTH) return tile->v[vertex] == 0;
-    if (side == SIDE_EAST) return tile->u[vertex] == frame->right;
+                       enum edge_side side, uint16_t *at) {
+    *at = side == EDGE_WEST || side == EDGE_EAST ? tile->v[vertex] : tile->u[vertex];
+    if (side == EDGE_WEST) return tile->u[vertex] == 0;
+    if (side == EDGE_SOUTH) return tile->v[vertex] == 0;
+    if (side == EDGE_EAST) return tile->u[vertex] == frame->right;
     return tile->v[vertex] == frame->top;
 }
 
@@ -22,7 +22,7 @@ static int compare_vertices(const void *left, const void *right) {
 }
 
 enum scree_status tile_border_new(struct scree_memory *memory, const struct decoded_tile *tile,
-                                  const struct tile_frame *frame, enum tile_side side, struct tile_border *border,
+                                  const struct tile_frame *frame, enum edge_side side, struct tile_border *border,
                                   struct scree_error *error) {
     uint32_t count = 0, kept = 0;
     uint16_t at;

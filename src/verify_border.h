@@ -28,7 +28,7 @@ struct border_difference {
 
 /* The border of a side of the tile's window, from the vertices themselves (edge lists may be wrong). */
 enum scree_status tile_border_new(struct scree_memory *memory, const struct decoded_tile *tile,
-                                  const struct tile_frame *frame, enum tile_side side, struct tile_border *border,
+                                  const struct tile_frame *frame, enum edge_side side, struct tile_border *border,
                                   struct scree_error *error);
 
 /* Safe on a zeroed border and twice. */

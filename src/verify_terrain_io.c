@@ -88,10 +88,10 @@ static enum scree_status meet_neighbours(struct walk *walk, struct tile_id id, c
                                          const struct tile_frame *frame) {
     struct tile_border west = {0}, south = {0}, east = {0};
     struct tile_border *north = &walk->here.norths[walk->here.count];
-    enum scree_status status = tile_border_new(walk->memory, tile, frame, SIDE_WEST, &west, walk->error);
-    if (status == SCREE_OK) status = tile_border_new(walk->memory, tile, frame, SIDE_SOUTH, &south, walk->error);
-    if (status == SCREE_OK) status = tile_border_new(walk->memory, tile, frame, SIDE_EAST, &east, walk->error);
-    if (status == SCREE_OK) status = tile_border_new(walk->memory, tile, frame, SIDE_NORTH, north, walk->error);
+    enum scree_status status = tile_border_new(walk->memory, tile, frame, EDGE_WEST, &west, walk->error);
+    if (status == SCREE_OK) status = tile_border_new(walk->memory, tile, frame, EDGE_SOUTH, &south, walk->error);
+    if (status == SCREE_OK) status = tile_border_new(walk->memory, tile, frame, EDGE_EAST, &east, walk->error);
+    if (status == SCREE_OK) status = tile_border_new(walk->memory, tile, frame, EDGE_NORTH, north, walk->error);
     if (status != SCREE_OK) goto cleanup;
     walk->here.ids[walk->here.count++] = id;
     const struct tile_border *below = border_below(&walk->below, id);

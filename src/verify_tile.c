@@ -129,9 +129,9 @@ static void check_occlusion(const struct decoded_tile *tile, const struct tile_f
 /* Is the vertex on this side of the window? */
 static bool is_on_side(const struct decoded_tile *tile, const struct tile_frame *frame, uint32_t vertex, int side) {
     switch (side) {
-    case SIDE_WEST: return tile->u[vertex] == 0;
-    case SIDE_SOUTH: return tile->v[vertex] == 0;
-    case SIDE_EAST: return tile->u[vertex] == frame->right;
+    case EDGE_WEST: return tile->u[vertex] == 0;
+    case EDGE_SOUTH: return tile->v[vertex] == 0;
+    case EDGE_EAST: return tile->u[vertex] == frame->right;
     default: return tile->v[vertex] == frame->top;
     }
 }
@@ -139,10 +139,10 @@ static bool is_on_side(const struct decoded_tile *tile, const struct tile_frame 
 static enum scree_status check_edge_lists(struct scree_memory *memory, const struct decoded_tile *tile,
                                           const struct tile_frame *frame, struct verify_report *report,
                                           struct scree_error *error) {
-    static const char *const names[SIDE_COUNT] = {"western", "southern", "eastern", "northern"};
+    static const char *const names[EDGE_COUNT] = {"western", "southern", "eastern", "northern"};
     uint8_t *listed = scree_allocate(memory, tile->vertex_count, 1, "marks of border vertices", error);
     if (listed == NULL) return error->status;
-    for (int side = 0; side < SIDE_COUNT; side++) {
+    for (int side = 0; side < EDGE_COUNT; side++) {
         uint8_t bit = (uint8_t)(1 << side);
         uint32_t twice = 0, foreign = 0, missing = 0;
         for (uint32_t i = 0; i < tile->edge_count[side]; i++) {

@@ -23,7 +23,7 @@ static enum scree_status decode_and_check(const unsigned char *bytes, size_t siz
     if (status != SCREE_OK) CU_ASSERT_PTR_NULL(tile.u);
     uint32_t wrong = 0;
     for (size_t i = 0; i < 3 * (size_t)tile.triangle_count; i++) wrong += tile.corners[i] >= tile.vertex_count;
-    for (int s = 0; s < SIDE_COUNT; s++)
+    for (int s = 0; s < EDGE_COUNT; s++)
         for (uint32_t i = 0; i < tile.edge_count[s]; i++) wrong += tile.edges[s][i] >= tile.vertex_count;
     for (uint32_t i = 0; i < tile.vertex_count; i++)
         wrong += tile.u[i] > DECODED_TOP || tile.v[i] > DECODED_TOP || tile.h[i] > DECODED_TOP;
@@ -61,7 +61,7 @@ static void what_was_encoded_is_decoded(void) {
     CU_ASSERT_EQUAL(tile.vertex_count, 4);
     CU_ASSERT_EQUAL(tile.triangle_count, 2);
     CU_ASSERT_EQUAL(tile.used_vertex_count, 4);
-    CU_ASSERT_EQUAL(tile.edge_count[SIDE_WEST], 2);
+    CU_ASSERT_EQUAL(tile.edge_count[EDGE_WEST], 2);
     CU_ASSERT_PTR_NULL(tile.normals);
     /* first use: corners 0, 1, 3 of the grid, then 2 */
     CU_ASSERT_EQUAL(tile.u[2], DECODED_TOP);

@@ -431,8 +431,8 @@ static void both_floats_are_exact(void) {
     fixture_free(f);
 }
 
-static int32_t find_at(const struct decoded_tile *tile, enum tile_side side, uint16_t along) {
-    bool vertical = side == SIDE_WEST || side == SIDE_EAST;
+static int32_t find_at(const struct decoded_tile *tile, enum edge_side side, uint16_t along) {
+    bool vertical = side == EDGE_WEST || side == EDGE_EAST;
     for (uint32_t i = 0; i < tile->edge_count[side]; i++) {
         uint32_t vertex = tile->edges[side][i];
         if ((vertical ? tile->v : tile->u)[vertex] == along) return (int32_t)vertex;
@@ -441,17 +441,17 @@ static int32_t find_at(const struct decoded_tile *tile, enum tile_side side, uin
 }
 
 /* One tile's side against its neighbour's: as many vertices, the same places, heights and normals, to the bit. */
-static void check_border(struct tile_id one, enum tile_side side, struct tile_id other, enum tile_side other_side) {
+static void check_border(struct tile_id one, enum edge_side side, struct tile_id other, enum edge_side other_side) {
     struct lattice lattice = lattice_geodetic(7);
     struct fixture *f = fixture_new(lattice, one, 40, 40, mountains),
                    *g = fixture_new(lattice, other, 40, 40, mountains);
     for (uint32_t i = 0; i < g->mesh.vertex_count; i++) /* another relief inside, and so other steps */
         if (i % 40 != 0 && i % 40 != 39 && i >= 40 && i < 1560) g->mesh.vertices[i].height *= 3;
-    bool vertical = side == SIDE_WEST || side == SIDE_EAST;
+    bool vertical = side == EDGE_WEST || side == EDGE_EAST;
     for (uint32_t i = 0; i < 40; i++) { /* heights and slopes are the posts' own */
-        uint32_t at = vertical ? 40 * i + (side == SIDE_EAST ? 39 : 0) : i + (side == SIDE_NORTH ? 1560 : 0);
+        uint32_t at = vertical ? 40 * i + (side == EDGE_EAST ? 39 : 0) : i + (side == EDGE_NORTH ? 1560 : 0);
         uint32_t there =
-            vertical ? 40 * i + (other_side == SIDE_EAST ? 39 : 0) : i + (other_side == SIDE_NORTH ? 1560 : 0);
+            vertical ? 40 * i + (other_side == EDGE_EAST ? 39 : 0) : i + (other_side == EDGE_NORTH ? 1560 : 0);
         memcpy(&g->slopes[2 * there], &f->slopes[2 * at], 2 * sizeof *f->slopes);
         g->mesh.vertices[there].height = f->mesh.vertices[at].height; /* the antimeridian is one line, too */
     }
@@ -474,22 +474,22 @@ static void check_border(struct tile_id one, enum tile_side side, struct tile_id
 }
 
 static void neighbours_agree_to_the_bit(void) {
-    check_border((struct tile_id){5, 9, 17}, SIDE_EAST, (struct tile_id){5, 10, 17}, SIDE_WEST);
-    check_border((struct tile_id){6, 9, 17}, SIDE_NORTH, (struct tile_id){6, 9, 18}, SIDE_SOUTH);
-    check_border((struct tile_id){7, 255, 40}, SIDE_EAST, (struct tile_id){7, 0, 40}, SIDE_WEST); /* antimeridian */
+    check_border((struct tile_id){5, 9, 17}, EDGE_EAST, (struct tile_id){5, 10, 17}, EDGE_WEST);
+    check_border((struct tile_id){6, 9, 17}, EDGE_NORTH, (struct tile_id){6, 9, 18}, EDGE_SOUTH);
+    check_border((struct tile_id){7, 255, 40}, EDGE_EAST, (struct tile_id){7, 0, 40}, EDGE_WEST); /* antimeridian */
 }
 
 static void edges_are_sorted_and_have_corners(void) {
     struct fixture *f = fixture_new(lattice_geodetic(5), (struct tile_id){4, 3, 9}, 13, 21, hills);
     struct encoded e = encode(f);
     const struct decoded_tile *tile = &e.tile;
-    static const uint32_t counts[SIDE_COUNT] = {21, 13, 21, 13};
-    for (int side = 0; side < SIDE_COUNT; side++) {
-        bool vertical = side == SIDE_WEST || side == SIDE_EAST;
+    static const uint32_t counts[EDGE_COUNT] = {21, 13, 21, 13};
+    for (int side = 0; side < EDGE_COUNT; side++) {
+        bool vertical = side == EDGE_WEST || side == EDGE_EAST;
         const uint16_t *along = vertical ? tile->v : tile->u, *across = vertical ? tile->u : tile->v;
         CU_ASSERT_EQUAL_FATAL(tile->edge_count[side], counts[side]);
         for (uint32_t i = 0; i < counts[side]; i++) {
-            CU_ASSERT_EQUAL(across[tile->edges[side][i]], side == SIDE_WEST || side == SIDE_SOUTH ? 0 : DECODED_TOP);
+            CU_ASSERT_EQUAL(across[tile->edges[side][i]], side == EDGE_WEST || side == EDGE_SOUTH ? 0 : DECODED_TOP);
             if (i > 0) CU_ASSERT(along[tile->edges[side][i]] > along[tile->edges[side][i - 1]]);
         }
         CU_ASSERT_EQUAL(along[tile->edges[side][0]], 0);
@@ -554,7 +554,7 @@ static void check_count(int columns, int rows, int splits, uint32_t wanted) {
     CU_ASSERT_EQUAL(e.tile.used_vertex_count, wanted);
     CU_ASSERT_EQUAL(e.tile.triangle_count, f->mesh.triangle_count);
     size_t index_bytes = wanted > 65535 ? 4 : 2, padding = wanted > 65535 && wanted % 2 == 1 ? 2 : 0, edges = 0;
-    for (int side = 0; side < SIDE_COUNT; side++) edges += e.tile.edge_count[side];
+    for (int side = 0; side < EDGE_COUNT; side++) edges += e.tile.edge_count[side];
     CU_ASSERT_EQUAL(edges, (size_t)(2 * columns + 2 * rows));
     CU_ASSERT_EQUAL(e.size_bytes, 88 + 4 + 6 * (size_t)wanted + padding + 4 + 3 * index_bytes * e.tile.triangle_count +
                                       16 + index_bytes * edges + 5 + 2 * (size_t)wanted);
@@ -597,10 +597,10 @@ static void local_tiles_are_cut(void) {
     check_codes(f, &e.tile, decoded_step_m(&e.tile) / f->tile.height_unit_m);
     struct lattice_window window = lattice_tile_window(&lattice, f->tile.id);
     CU_ASSERT_EQUAL(window.columns, 144);
-    CU_ASSERT_EQUAL(e.tile.edge_count[SIDE_EAST], 10);
-    CU_ASSERT_EQUAL(e.tile.edge_count[SIDE_NORTH], 20);
+    CU_ASSERT_EQUAL(e.tile.edge_count[EDGE_EAST], 10);
+    CU_ASSERT_EQUAL(e.tile.edge_count[EDGE_NORTH], 20);
     for (uint32_t i = 0; i < 10; i++) /* the eastern edge lies where the raster ends, not where the tile would */
-        CU_ASSERT_EQUAL(e.tile.u[e.tile.edges[SIDE_EAST][i]], (2 * 144 * 32767 + 256) / 512);
+        CU_ASSERT_EQUAL(e.tile.u[e.tile.edges[EDGE_EAST][i]], (2 * 144 * 32767 + 256) / 512);
     CU_ASSERT_EQUAL(e.tile.center_m[0], 500000 + 30 * (256 + 72));
     CU_ASSERT_EQUAL(e.tile.center_m[1], 4000000 + 30 * (256 + 22));
     CU_ASSERT_EQUAL(e.tile.occlusion[0], 0);
