@@ -105,13 +105,21 @@ line_of() { # FORM LEVELS FILE...: bytes, and bytes with each file gzipped
     gzipped=$(for file in "$@"; do gzip -9 -c "$file"; done | wc -c)
     echo "$form,$levels,$((bytes)),$((gzipped))" >>"$folder/sizes.csv"
 }
-# The rungs of a block which LEVELS models show: evenly chosen, the finest and the base among them.
+# The rungs of a block which LEVELS models show: the finest, the base, and between them those nearest to equal ratios of
+# triangles.
 chosen() { # BLOCK LEVELS
-    awk -F, -v block="$1" -v levels="$2" '$1 == block { rung[n++] = $2 }
+    awk -F, -v block="$1" -v levels="$2" '
+        BEGIN { n = 0 }
+        $1 == block { rung[n] = $2; size[n++] = log($7) }
         END {
-            if (levels == "all" || levels > n) levels = n
-            if (levels == 1) print rung[n - 1]
-            else for (i = 0; i < levels; i++) print rung[int(i * (n - 1) / (levels - 1) + 0.5)]
+            if (levels == "all") levels = n
+            for (i = 0; i < levels; i++) {
+                wanted = levels == 1 ? size[n - 1] : size[0] + (size[n - 1] - size[0]) * i / (levels - 1)
+                best = 0
+                for (j = 0; j < n; j++)
+                    if ((size[j] - wanted) ^ 2 < (size[best] - wanted) ^ 2) best = j
+                print levels == n ? rung[i] : rung[best]
+            }
         }' "$folder/rungs.csv"
 }
 # Increments as the paper has them (Table 1), between each two scales as its section 2.2.2 merges them, in numbers of 4
