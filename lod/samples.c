@@ -162,18 +162,32 @@ static inline const struct sample *first_in(const struct samples *samples, int64
     return samples->extremes + (samples->cell_first != NULL ? samples->cell_first[cell] : 2 * cell);
 }
 
+#define FEW_CELLS 20 /* looked through one by one before it pays to find out which of them a triangle misses */
+
 static struct sums over_extremes(const struct samples *samples, const struct plane *plane, const struct sample *a,
                                  const struct sample *b, const struct sample *c) {
     const struct sample *const corner[3] = {a, b, c};
     struct sums error = {0, 0};
     struct cell_range range;
-    int32_t y_least = a->y, y_largest = a->y;
+    int32_t y_least = a->y, y_largest = a->y, x_least = a->x, x_largest = a->x;
     for (int i = 1; i < 3; i++) {
         if (corner[i]->y < y_least) y_least = corner[i]->y;
         if (corner[i]->y > y_largest) y_largest = corner[i]->y;
+        if (corner[i]->x < x_least) x_least = corner[i]->x;
+        if (corner[i]->x > x_largest) x_largest = corner[i]->x;
     }
     int32_t row = clamp_cell(y_least - 1, samples->cell_span, samples->rows);
     int32_t row_last = clamp_cell(y_largest, samples->cell_span, samples->rows);
+    int32_t column = clamp_cell(x_least - 1, samples->cell_span, samples->columns);
+    int32_t column_last = clamp_cell(x_largest, samples->cell_span, samples->columns);
+    if ((int64_t)(row_last - row + 1) * (column_last - column + 1) <= FEW_CELLS) {
+        for (; row <= row_last; row++) {
+            int64_t cells = (int64_t)row * samples->columns;
+            scan_cells(first_in(samples, cells + column), first_in(samples, cells + column_last + 1), plane, corner,
+                       &error);
+        }
+        return error;
+    }
     struct crossing low, high = cross_row(corner, row * samples->cell_span);
     for (; row <= row_last; row++) {
         low = high;
