@@ -111,14 +111,15 @@ enum scree_status tile_begin_rest(struct tile *tile, struct scree_error *error) 
     tile->rest = rest;
     rest->columns = geometry->columns;
     rest->rows = geometry->rows;
-    rest->cell_span = 2 * geometry->cell_span;
+    rest->cell_span = (geometry->keeps_cells ? 1 : 2) * geometry->cell_span;
     rest->cell_columns = extremes_cells(geometry->columns, rest->cell_span);
     rest->cell_rows = extremes_cells(geometry->rows, rest->cell_span);
     rest->extremes = scree_allocate(tile->memory, 2 * (size_t)rest->cell_columns * (size_t)rest->cell_rows,
                                     sizeof *rest->extremes, "a tile's extremes", error);
     if (rest->extremes == NULL) return SCREE_E_MEMORY;
-    return slope_grid_allocate(tile->memory, (tile->slopes.columns - 1) / 2 + 1, (tile->slopes.rows - 1) / 2 + 1,
-                               rest->cell_span, &rest->slopes, error);
+    int32_t across = geometry->keeps_cells ? 1 : 2;
+    return slope_grid_allocate(tile->memory, (tile->slopes.columns - 1) / across + 1,
+                               (tile->slopes.rows - 1) / across + 1, rest->cell_span, &rest->slopes, error);
 }
 
 enum scree_status tile_begin_simplifier(struct tile *tile, struct scree_error *error) {
@@ -183,11 +184,23 @@ static enum scree_status use_extremes(struct tile *tile, struct scree_error *err
                                geometry->rows / geometry->cell_span + 1, geometry->cell_span, &tile->slopes, error);
 }
 
+void tile_hand_up_slopes(struct tile *tile) {
+    struct slope_grid *handed = &tile->rest->slopes;
+    if (tile->geometry.keeps_cells)
+        slope_grid_place(&tile->slopes, 0, 0, handed);
+    else
+        slope_grid_reduce(&tile->slopes, handed);
+}
+
 static enum scree_status finish_extremes(struct tile *tile, struct scree_error *error) {
     enum scree_status status = tile_begin_rest(tile, error);
     if (status != SCREE_OK) return status;
-    extremes_reduce(tile->extremes, tile->samples.columns, tile->samples.rows, tile->rest->extremes);
-    slope_grid_reduce(&tile->slopes, &tile->rest->slopes);
+    if (tile->geometry.keeps_cells)
+        memcpy(tile->rest->extremes, tile->extremes,
+               2 * (size_t)tile->samples.columns * (size_t)tile->samples.rows * sizeof *tile->extremes);
+    else
+        extremes_reduce(tile->extremes, tile->samples.columns, tile->samples.rows, tile->rest->extremes);
+    tile_hand_up_slopes(tile);
     return SCREE_OK;
 }
 

@@ -17,6 +17,7 @@
 struct tile_geometry {
     int32_t columns, rows; /* lattice steps that the tile covers */
     int32_t cell_span;     /* lattice steps of a cell: 1 at the finest zoom, doubling with each coarser one */
+    bool keeps_cells;      /* the parent has cells of the same span: a TIN's tiles until there are enough of them */
     double height_unit_m;
     double east_m, north_m;   /* metres of a step, at the row where eastward steps are longest */
     const float *east_drop_m; /* see struct samples; copied; NULL: the Earth is flat */

@@ -19,6 +19,8 @@ void tile_place_vertices(struct tile *tile);
 /* Makes what will be handed up; its extremes and slopes are to be filled. */
 enum scree_status tile_begin_rest(struct tile *tile, struct scree_error *error);
 
+void tile_hand_up_slopes(struct tile *tile);
+
 /* Once mesh and samples are there. */
 enum scree_status tile_begin_simplifier(struct tile *tile, struct scree_error *error);
 

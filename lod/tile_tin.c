@@ -214,12 +214,13 @@ cleanup:
 /* The lowest and the highest sample of the parent's cells. */
 static void hand_up_extremes(struct tile *tile) {
     struct coarse_tile *rest = tile->rest;
+    int32_t across = tile->geometry.keeps_cells ? 1 : 2;
     for (int32_t cell = 0; cell < rest->cell_columns * rest->cell_rows; cell++) {
         struct sample *pair = &rest->extremes[2 * (int64_t)cell];
-        int32_t column = cell % rest->cell_columns * 2, row = cell / rest->cell_columns * 2;
+        int32_t column = cell % rest->cell_columns * across, row = cell / rest->cell_columns * across;
         bool is_first = true;
-        for (int32_t y = row; y < row + 2 && y < tile->samples.rows; y++)
-            for (int32_t x = column; x < column + 2 && x < tile->samples.columns; x++) {
+        for (int32_t y = row; y < row + across && y < tile->samples.rows; y++)
+            for (int32_t x = column; x < column + across && x < tile->samples.columns; x++) {
                 int64_t own = (int64_t)y * tile->samples.columns + x;
                 for (uint32_t i = tile->cell_first[own]; i < tile->cell_first[own + 1]; i++, is_first = false) {
                     if (is_first || tile->extremes[i].height_m < pair[0].height_m) pair[0] = tile->extremes[i];
@@ -286,7 +287,7 @@ enum scree_status tile_from_tin(struct scree_memory *memory, const struct tile_g
     if ((status = use_slopes(tile, piece, error)) != SCREE_OK) goto failed;
     if ((status = tile_begin_rest(tile, error)) != SCREE_OK) goto failed;
     hand_up_extremes(tile);
-    slope_grid_reduce(&tile->slopes, &tile->rest->slopes);
+    tile_hand_up_slopes(tile);
     mesh_measure(&tile->mesh, &tile->samples);
     if ((status = tile_begin_simplifier(tile, error)) != SCREE_OK) goto failed;
     return SCREE_OK;

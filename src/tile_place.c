@@ -10,18 +10,22 @@
 
 #define MARGIN 1 /* posts around a tile, for slopes on its border */
 
-int32_t tile_place_cells(const struct tile_plan *plan) {
-    return plan->tin != NULL ? plan->tin->cells : TILE_CELLS;
+/* A TIN's leaf tiles may have few points, and few cells; coarser ones have more of both. */
+int32_t tile_place_cells(const struct tile_plan *plan, int zoom) {
+    int32_t cells = plan->tin != NULL ? plan->tin->cells : TILE_CELLS;
+    for (int above = plan->ladder->finest_zoom; above > zoom && cells < TILE_CELLS; above--) cells *= 2;
+    return cells;
 }
 
 struct tile_geometry tile_place_geometry(const struct tile_plan *plan, struct tile_id id, struct tile_drops *drops) {
     const struct lattice *lattice = plan->lattice;
     struct lattice_window window = lattice_tile_window(lattice, id);
-    struct tile_geometry geometry = {.columns = window.columns,
-                                     .rows = window.rows,
-                                     .cell_span =
-                                         (int32_t)(lattice_tile_span(lattice, id.zoom) / tile_place_cells(plan)),
-                                     .height_unit_m = plan->ladder->height_unit_m};
+    struct tile_geometry geometry = {
+        .columns = window.columns,
+        .rows = window.rows,
+        .cell_span = (int32_t)(lattice_tile_span(lattice, id.zoom) / tile_place_cells(plan, id.zoom)),
+        .keeps_cells = id.zoom > 0 && tile_place_cells(plan, id.zoom - 1) > tile_place_cells(plan, id.zoom),
+        .height_unit_m = plan->ladder->height_unit_m};
     double top = (double)window.y + window.rows, equator = -lattice->south / lattice->spacing_y;
     lattice_steps_m(lattice, fmin(fmax(equator, (double)window.y), top), &geometry.east_m, &geometry.north_m);
     for (int32_t row = 0; row * geometry.cell_span < window.rows + geometry.cell_span; row++)

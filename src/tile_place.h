@@ -38,7 +38,7 @@ struct tile_drops {
     float east_m[TILE_CELLS + 1];
 };
 /* Cells along the side of a whole tile. */
-int32_t tile_place_cells(const struct tile_plan *plan);
+int32_t tile_place_cells(const struct tile_plan *plan, int zoom);
 
 struct tile_geometry tile_place_geometry(const struct tile_plan *plan, struct tile_id id, struct tile_drops *drops);
 
