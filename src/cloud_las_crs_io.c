@@ -128,8 +128,9 @@ static enum scree_status find_crs(const char *name, const struct projection *pro
     bool has_wkt = projection->wkt.size_bytes > 0, has_keys = projection->keys.size_bytes >= 8;
     if (has_keys && !(has_wkt && prefers_wkt)) status = read_keys(projection, crs, &found, error);
     if (status == SCREE_OK && found == NULL && has_wkt) {
+        char *text = (char *)projection->wkt.bytes; /* as WKT only: not as the name of a file or of a page */
         found = OSRNewSpatialReference(NULL);
-        if (OSRSetFromUserInput(found, (const char *)projection->wkt.bytes) != OGRERR_NONE) {
+        if (OSRImportFromWkt(found, &text) != OGRERR_NONE) {
             OSRDestroySpatialReference(found);
             found = NULL;
         }

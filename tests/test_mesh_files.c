@@ -3,7 +3,7 @@
 #include "src/file_io.h"
 #include "src/mesh_file_io.h"
 #include "src/mesh_file_read.h"
-#include "stream/cursor.h"
+#include "tests/mesh_file_maker.h"
 #include "tests/suites.h"
 
 #include <CUnit/CUnit.h>
@@ -14,179 +14,12 @@
 #include <string.h>
 #include <unistd.h>
 
-#define CAPACITY_BYTES 2048
-
-struct made {
-    unsigned char bytes[CAPACITY_BYTES];
-    size_t size_bytes;
-};
-
-/* Two triangles over a square; northings that no float holds. */
-static const double square[4][3] = {{512345.678, 4412345.678, 12.5},
-                                    {512346.678, 4412345.678, 12.625},
-                                    {512346.678, 4412346.678, -3.1},
-                                    {512345.678, 4412346.678, 0.1}};
-static const uint32_t halves[6] = {0, 1, 2, 0, 2, 3};
-
-static void put_text(struct made *made, const char *text) {
-    size_t length = strlen(text);
-    CU_ASSERT_FATAL(made->size_bytes + length <= CAPACITY_BYTES);
-    memcpy(made->bytes + made->size_bytes, text, length);
-    made->size_bytes += length;
-}
-
-static void put_number(struct made *made, uint64_t bits, size_t size_bytes, bool is_big) {
-    CU_ASSERT_FATAL(made->size_bytes + size_bytes <= CAPACITY_BYTES);
-    for (size_t i = 0; i < size_bytes; i++)
-        made->bytes[made->size_bytes++] = (unsigned char)(bits >> 8 * (is_big ? size_bytes - 1 - i : i));
-}
-
-static void put_double(struct made *made, double value, bool is_big) {
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    put_number(made, bits, sizeof bits, is_big);
-}
-
-static void put_float(struct made *made, float value) {
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    put_number(made, bits, sizeof bits, false);
-}
-
-/* ---- good files, one square each ---- */
-
-static void make_obj(struct made *made) {
-    put_text(made, "# a square\nmtllib none.mtl\no square\n"
-                   "v 512345.678 4412345.678 12.5\nv 512346.678 4412345.678 12.625 1.0\nvn 0 0 1\r\n"
-                   "v 512346.678 4412346.678 -3.1\nv 5.12345678e5 4412346.678 .1\nf 1 2/1 3//1 -1/1/1 # all\n");
-}
-
-static void make_off(struct made *made) {
-    put_text(made, "COFF # colours\n\n4 2 0\n512345.678 4412345.678 12.5 255 0 0\n# between\n\n"
-                   "512346.678 4412345.678 12.625\n512346.678\t4412346.678 -3.1\n512345.678 4412346.678 0.1\n"
-                   "3 0 1 2 0.5 0.5 0.5\n3 0 2 3");
-}
-
-static void make_stl_text(struct made *made) {
-    static const char *const points[4] = {"512345.678 4412345.678 12.5", "512346.678 4412345.678 12.625",
-                                          "512346.678 4412346.678 -3.1", "512345.678 4412346.678 0.1"};
-    put_text(made, "solid my #1 vertex\n");
-    for (int t = 0; t < 2; t++) {
-        put_text(made, "facet normal 0 0 nan\n outer loop\n");
-        for (int k = 0; k < 3; k++) {
-            put_text(made, "  vertex ");
-            put_text(made, points[halves[3 * t + k]]);
-            put_text(made, "\n");
-        }
-        put_text(made, " endloop\nendfacet\n");
-    }
-    put_text(made, "endsolid my #1 vertex\n");
-}
-
-static void make_stl(struct made *made) {
-    put_text(made, "solid but binary, as many are                                                   ");
-    put_number(made, 2, 4, false);
-    for (int t = 0; t < 2; t++) {
-        for (int axis = 0; axis < 3; axis++) put_float(made, NAN);
-        for (int k = 0; k < 3; k++)
-            for (int axis = 0; axis < 3; axis++) put_float(made, (float)square[halves[3 * t + k]][axis]);
-        put_number(made, 7, 2, false);
-    }
-}
-
-static void make_ply_text(struct made *made) {
-    put_text(made, "ply\r\nformat ascii 1.0\r\ncomment it's #1\r\nelement vertex 4\r\nproperty double x\r\n"
-                   "property double y\r\nproperty uchar red\r\nproperty double z\r\nproperty list uchar int near\r\n"
-                   "element face 1\r\nproperty float area\r\nproperty list uchar int vertex_indices\r\n"
-                   "element edge 1000000\r\nproperty int vertex1\r\nend_header\r\n"
-                   "512345.678 4412345.678 255 12.5 0\r\n512346.678 4412345.678 255 12.625 2 1 1\r\n"
-                   "512346.678 4412346.678 0 -3.1 1 2\r\n512345.678 4412346.678 0 0.1 0\r\n0.5 4 0 1 2 3");
-}
-
-static void make_ply_binary(struct made *made, bool is_big) {
-    put_text(made, is_big ? "ply\nformat binary_big_endian 1.0\n" : "ply\nformat binary_little_endian 1.0\n");
-    put_text(made, "element material 1\nproperty int id\nelement face 2\nproperty list uint8 uint16 vertex_index\n"
-                   "element vertex 4\nproperty short quality\nproperty float64 x\nproperty float64 y\n"
-                   "property float64 z\nend_header\n");
-    put_number(made, 5, 4, is_big);
-    for (int t = 0; t < 2; t++) {
-        put_number(made, 3, 1, is_big);
-        for (int k = 0; k < 3; k++) put_number(made, halves[3 * t + k], 2, is_big);
-    }
-    for (int i = 0; i < 4; i++) {
-        put_number(made, 0xfffe, 2, is_big);
-        for (int axis = 0; axis < 3; axis++) put_double(made, square[i][axis], is_big);
-    }
-}
-
-static void make_ply_little(struct made *made) {
-    make_ply_binary(made, false);
-}
-
-static void make_ply_big(struct made *made) {
-    make_ply_binary(made, true);
-}
-
-static void put_om_head(struct made *made, char mesh, unsigned version, uint32_t faces, uint32_t edges) {
-    const char magic[] = {'O', 'M', mesh, '\0'};
-    put_text(made, magic);
-    put_number(made, version, 1, false);
-    put_number(made, 4, 4, false);
-    put_number(made, faces, 4, false);
-    put_number(made, edges, 4, false);
-    put_number(made, 0x5600, 2, false); /* points: three doubles each */
-    for (int i = 0; i < 4; i++)
-        for (int axis = 0; axis < 3; axis++) put_double(made, square[i][axis], false);
-}
-
-/* As OpenMesh writes it: 5 edges, each as two half-edges of next one, point at the end, face; then a property that
- * others made, and what closes the file. */
-static void make_om(struct made *made) {
-    static const signed char half_edges[10][3] = {{2, 1, 0}, {7, 0, -1},  /* 0-1 */
-                                                  {4, 2, 0}, {1, 1, -1},  /* 1-2 */
-                                                  {0, 0, 0}, {6, 2, 1},   /* 2-0 */
-                                                  {8, 3, 1}, {3, 2, -1},  /* 2-3 */
-                                                  {5, 0, 1}, {9, 3, -1}}; /* 3-0 */
-    put_om_head(made, 'T', 0x42, 2, 5);
-    put_number(made, 0x2602 + (6 << 5), 2, false); /* vertices' own property: a name, a type, a size, data */
-    put_text(made, "\4rain\5float");
-    put_number(made, 8, 4, false);
-    put_text(made, "12345678");
-    put_number(made, 0x16f8, 2, false);
-    for (int i = 0; i < 10; i++)
-        for (int k = 0; k < 3; k++) put_number(made, (unsigned char)half_edges[i][k], 1, false);
-    put_number(made, 0x06e8, 2, false);
-    put_text(made, "\4\10"); /* each face's half-edge */
-    put_number(made, 0x001c, 2, false);
-}
-
-/* Of before 2.0, with the faces' corners: one polygon. */
-static void make_old_om(struct made *made) {
-    put_om_head(made, 'P', 0x22, 1, 4);
-    put_number(made, 0x06e8, 2, false);
-    put_number(made, 4, 2, false);
-    for (unsigned i = 0; i < 4; i++) put_number(made, i, 1, false);
-}
-
-static const struct {
-    const char *name;
-    void (*make)(struct made *made);
-    bool has_floats, has_own_corners;
-} goods[] = {
-    {"good.obj", make_obj, false, false},      {"good.OFF", make_off, false, false},
-    {"text.stl", make_stl_text, false, true},  {"good.stl", make_stl, true, true},
-    {"text.ply", make_ply_text, false, false}, {"little.ply", make_ply_little, false, false},
-    {"big.Ply", make_ply_big, false, false},   {"good.om", make_om, false, false},
-    {"old.om", make_old_om, false, false},
-};
-
-#define GOOD_COUNT (sizeof goods / sizeof *goods)
-
-static void put_file(const char *path, struct made *made) {
+static void put_file(const char *path, struct mesh_file_bytes *made) {
     VSIFCloseL(VSIFileFromMemBuffer(path, made->bytes, made->size_bytes, FALSE));
 }
 
-static enum scree_status read_made(const char *name, struct made *made, struct tin *tin, struct scree_error *error) {
+static enum scree_status read_made(const char *name, struct mesh_file_bytes *made, struct tin *tin,
+                                   struct scree_error *error) {
     char path[256];
     snprintf(path, sizeof path, "/vsimem/%s", name);
     put_file(path, made);
@@ -205,7 +38,7 @@ static void check_square(const struct tin *tin, bool has_floats, bool has_own_co
     CU_ASSERT_EQUAL_FATAL(tin->triangle_count, 2);
     for (int i = 0; i < 6; i++) {
         const struct cloud_point *point = &tin->points[tin->corners[i]];
-        const double *wanted = square[halves[i]];
+        const double *wanted = mesh_file_square[mesh_file_corners[i]];
         const double found[3] = {point->x, point->y, point->z};
         for (int axis = 0; axis < 3; axis++)
             CU_ASSERT_TRUE(has_floats ? (float)found[axis] == (float)wanted[axis] : found[axis] == wanted[axis]);
@@ -213,16 +46,16 @@ static void check_square(const struct tin *tin, bool has_floats, bool has_own_co
 }
 
 static void test_formats(void) {
-    for (size_t i = 0; i < GOOD_COUNT; i++) {
-        static struct made made;
+    for (size_t i = 0; i < MESH_FILE_KINDS; i++) {
+        static struct mesh_file_bytes made;
         struct scree_memory memory = {0};
         struct tin tin = {.memory = &memory};
         struct scree_error error;
         made.size_bytes = 0;
-        goods[i].make(&made);
-        CU_ASSERT_TRUE(mesh_file_is_mesh(goods[i].name));
-        if (read_made(goods[i].name, &made, &tin, &error) == SCREE_OK)
-            check_square(&tin, goods[i].has_floats, goods[i].has_own_corners);
+        mesh_file_kinds[i].make(&made);
+        CU_ASSERT_TRUE(mesh_file_is_mesh(mesh_file_kinds[i].name));
+        if (read_made(mesh_file_kinds[i].name, &made, &tin, &error) == SCREE_OK)
+            check_square(&tin, mesh_file_kinds[i].has_floats, mesh_file_kinds[i].has_own_corners);
         else
             CU_FAIL(error.text);
         tin_release(&tin);
@@ -236,24 +69,25 @@ static void test_written(void) {
     static const char *const endings[] = {"ply", "obj", "off", "stl"};
     char folder[] = "mesh-files-XXXXXX", path[64];
     double xyz[12];
-    for (int i = 0; i < 12; i++) xyz[i] = (float)square[i / 3][i % 3];
+    for (int i = 0; i < 12; i++) xyz[i] = (float)mesh_file_square[i / 3][i % 3];
     CU_ASSERT_PTR_NOT_NULL_FATAL(mkdtemp(folder));
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
         struct scree_memory memory = {0};
         struct tin tin = {.memory = &memory};
         struct scree_error error = {0};
         snprintf(path, sizeof path, "%s/a.%s", folder, endings[i]);
-        CU_ASSERT_EQUAL(mesh_file_write(path, xyz, 4, halves, 2, &error), SCREE_OK);
+        CU_ASSERT_EQUAL(mesh_file_write(path, xyz, 4, mesh_file_corners, 2, &error), SCREE_OK);
         CU_ASSERT_EQUAL(mesh_file_read(path, &tin, &error), SCREE_OK);
         if (error.status == SCREE_OK) check_square(&tin, true, i == 3);
         tin_release(&tin);
         unlink(path);
     }
-    static struct made made = {.size_bytes = 0};
+    static struct mesh_file_bytes made = {.size_bytes = 0};
     struct scree_memory memory = {0};
     struct tin tin = {.memory = &memory};
     struct scree_error error = {0};
-    make_ply_big(&made);
+    for (size_t i = 0; i < MESH_FILE_KINDS; i++)
+        if (strcmp(mesh_file_kinds[i].name, "big.Ply") == 0) mesh_file_kinds[i].make(&made);
     VSILFILE *archive = VSIFOpenL("/vsizip/vsimem/a.zip/b.ply", "wb");
     CU_ASSERT_PTR_NOT_NULL_FATAL(archive);
     CU_ASSERT_EQUAL(VSIFWriteL(made.bytes, 1, made.size_bytes, archive), made.size_bytes);
@@ -345,13 +179,13 @@ static const struct {
 
 static void test_bad(void) {
     for (size_t i = 0; i < sizeof bads / sizeof *bads; i++) {
-        static struct made made;
+        static struct mesh_file_bytes made;
         struct scree_memory memory = {0};
         struct tin tin = {.memory = &memory};
         struct scree_error error;
         made.size_bytes = 0;
-        if (bads[i].text[0] == '@') put_text(&made, ply_start);
-        put_text(&made, bads[i].text + (bads[i].text[0] == '@'));
+        if (bads[i].text[0] == '@') mesh_file_put_text(&made, ply_start);
+        mesh_file_put_text(&made, bads[i].text + (bads[i].text[0] == '@'));
         CU_ASSERT_EQUAL(read_made(bads[i].name, &made, &tin, &error), bads[i].status);
         if (strstr(error.text, bads[i].word) == NULL) {
             printf("\n%zu: %s\n", i, error.text);
@@ -371,9 +205,9 @@ static void test_bad(void) {
     CU_ASSERT_EQUAL(mesh_file_read("/vsimem/folder.ply", &tin, &error), SCREE_E_IO);
     CU_ASSERT_STRING_EQUAL(error.text, "/vsimem/folder.ply: is no file");
     VSIRmdir("/vsimem/folder.ply");
-    static struct made many = {.size_bytes = 0};
-    put_text(&many, "v 0 0 0\nf");
-    for (int i = 0; i <= MESH_MOST_CORNERS; i++) put_text(&many, " 1");
+    static struct mesh_file_bytes many = {.size_bytes = 0};
+    mesh_file_put_text(&many, "v 0 0 0\nf");
+    for (int i = 0; i <= MESH_MOST_CORNERS; i++) mesh_file_put_text(&many, " 1");
     memory.limit_bytes = 0;
     CU_ASSERT_EQUAL(read_made("many.obj", &many, &tin, &error), SCREE_E_UNSUPPORTED);
     memory.limit_bytes = 3000;
@@ -384,11 +218,11 @@ static void test_bad(void) {
  * about the file. */
 static void test_damaged(void) {
     static const unsigned char others[] = {0x00, 0x01, 0x7f, 0x80, 0xff, ' ', '\n', '9', '-'};
-    static struct made good, made;
+    static struct mesh_file_bytes good, made;
     uint64_t accepted = 0, refused = 0;
-    for (size_t i = 0; i < GOOD_COUNT; i++) {
+    for (size_t i = 0; i < MESH_FILE_KINDS; i++) {
         good.size_bytes = 0;
-        goods[i].make(&good);
+        mesh_file_kinds[i].make(&good);
         for (size_t at = 0; at < good.size_bytes; at++)
             for (size_t k = 0; k <= sizeof others; k++) {
                 struct scree_memory memory = {0};
@@ -399,7 +233,7 @@ static void test_damaged(void) {
                     made.size_bytes = at;
                 else
                     made.bytes[at] = others[k];
-                if (read_made(goods[i].name, &made, &tin, &error) == SCREE_OK) {
+                if (read_made(mesh_file_kinds[i].name, &made, &tin, &error) == SCREE_OK) {
                     accepted++;
                     for (size_t c = 0; c < 3 * (size_t)tin.triangle_count; c++)
                         CU_ASSERT_TRUE_FATAL(tin.corners[c] < tin.point_count);
@@ -413,17 +247,17 @@ static void test_damaged(void) {
 }
 
 static void test_no_memory(void) {
-    for (size_t i = 0; i < GOOD_COUNT; i++) {
-        static struct made made;
+    for (size_t i = 0; i < MESH_FILE_KINDS; i++) {
+        static struct mesh_file_bytes made;
         enum scree_status status = SCREE_E_MEMORY;
         made.size_bytes = 0;
-        goods[i].make(&made);
+        mesh_file_kinds[i].make(&made);
         uint64_t n = 1;
         for (; status == SCREE_E_MEMORY && n < 50; n++) {
             struct scree_memory memory = {.fail_request = n};
             struct tin tin = {.memory = &memory};
             struct scree_error error;
-            status = read_made(goods[i].name, &made, &tin, &error);
+            status = read_made(mesh_file_kinds[i].name, &made, &tin, &error);
             tin_release(&tin);
         }
         CU_ASSERT_EQUAL(status, SCREE_OK);
