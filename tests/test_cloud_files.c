@@ -129,11 +129,16 @@ static void test_las_wkt(void) {
     check_field(path, &two, 1200.0 / 3937, 0);
     CPLFree(compound);
     OSRDestroySpatialReference(crs);
-    fixture.wkt = "no CRS at all";
-    put_las(path, &fixture);
+    put_file("/vsimem/another.wkt", wkt, sizeof wkt - 1);
+    static const char *const others[] = {"no CRS at all", "/vsimem/another.wkt"}; /* a file names no other files */
     struct opened r;
-    CU_ASSERT_FALSE(open_cloud(path, NULL, &r));
-    CU_ASSERT_PTR_NOT_NULL(strstr(r.error.text, "--s_srs"));
+    for (int i = 0; i < 2; i++) {
+        fixture.wkt = others[i];
+        put_las(path, &fixture);
+        CU_ASSERT_FALSE(open_cloud(path, NULL, &r));
+        CU_ASSERT_PTR_NOT_NULL(strstr(r.error.text, "--s_srs"));
+    }
+    VSIUnlink("/vsimem/another.wkt");
     struct raster_options options = {.inputs = &path, .input_count = 1, .source_srs = "EPSG:32611"};
     CU_ASSERT_TRUE_FATAL(open_raster(&options, -1, &r));
     close_raster(&r);
