@@ -25,8 +25,8 @@ static const char help[] =
     "have,\n"
     "each tile at its finest rung against its children at their coarsest, scree.json against headers and files.\n"
     "With --against the vertical error as well. Exits 1 when a promise is broken.\n\n"
-    "  --against DEM...     measure against the rasters that the terrain was built from: every zoom of static tiles,\n"
-    "                       every rung of every stream\n"
+    "  --against DEM...     measure against the rasters, clouds or meshes that the terrain was built from: every zoom\n"
+    "                       of static tiles, every rung of every stream, at every post or every point\n"
     "  --format json        for machines; streams are the member \"streams\"\n"
     "  -q                   print nothing but broken promises\n\n"
     "With --against, as they were given to scree build:\n"
@@ -83,7 +83,7 @@ static int parse(int argc, char **argv, struct arguments *arguments) {
             arguments->path = argument;
         }
         if (in_inputs && at == argc && arguments->raster.input_count == 0)
-            return usage("--against wants the rasters that the terrain was built from", "");
+            return usage("--against wants what the terrain was built from", "");
     }
     struct scree_error error = {0};
     if (!raster_arguments_check(&arguments->raster, &error)) return usage(error.text, "");

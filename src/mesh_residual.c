@@ -14,22 +14,18 @@ struct linear {
     double constant, by_x, by_y;
 };
 
-struct corner {
-    double x, y, height_m;
-};
-
 /* What the scan of one tile needs. */
 struct scan {
     const struct lattice *lattice;
     const struct post_block *block;
     struct residuals *residuals;
-    int64_t tile_x, tile_y, span; /* of the tile's square, lattice steps */
-    double right, top;            /* of its window: lattice steps from its corner */
+    int64_t tile_x, tile_y; /* lattice steps */
+    double right, top;      /* of its window: lattice steps from its corner */
     bool with_east, with_north;
 };
 
 /* Through three values at the corners of a triangle of positive area. */
-static struct linear through(const struct corner corners[3], const double values[3]) {
+static struct linear through(const struct residual_corner corners[3], const double values[3]) {
     double x1 = corners[1].x - corners[0].x, y1 = corners[1].y - corners[0].y;
     double x2 = corners[2].x - corners[0].x, y2 = corners[2].y - corners[0].y;
     double d1 = values[1] - values[0], d2 = values[2] - values[0];
@@ -55,7 +51,7 @@ static double bin_top(int bin) {
     return size_m;
 }
 
-static void add(struct residual *residual, double difference_m, int64_t x, int64_t y) {
+void residual_add(struct residual *residual, double difference_m, int64_t x, int64_t y) {
     double size_m = fabs(difference_m);
     residual->sum_m += difference_m;
     residual->sum_squares_m2 += difference_m * difference_m;
@@ -68,8 +64,8 @@ static void add(struct residual *residual, double difference_m, int64_t x, int64
 }
 
 /* Where an edge crosses a row. Always computed from its lower end, so that both of its triangles agree to the bit. */
-static double crossing(const struct corner *a, const struct corner *b, double y) {
-    const struct corner *low = a->y < b->y ? a : b, *high = a->y < b->y ? b : a;
+static double crossing(const struct residual_corner *a, const struct residual_corner *b, double y) {
+    const struct residual_corner *low = a->y < b->y ? a : b, *high = a->y < b->y ? b : a;
     if (y == high->y) return high->x;
     return low->x + (y - low->y) * (high->x - low->x) / (high->y - low->y);
 }
@@ -77,13 +73,13 @@ static double crossing(const struct corner *a, const struct corner *b, double y)
 /* The two crossings of a row with a triangle's edges; edges count from their lower end (inclusive) to their upper one
  * (exclusive), or the other way round for the northernmost row of all. `on_border`: one of them runs along the eastern
  * border. False: the row passes the triangle by. */
-static bool cross(const struct corner corners[3], double y, bool from_below, double border, double *left, double *right,
-                  bool *on_border) {
+static bool cross(const struct residual_corner corners[3], double y, bool from_below, double border, double *left,
+                  double *right, bool *on_border) {
     int found = 0;
     *on_border = false;
     double at[3];
     for (int k = 0; k < 3; k++) {
-        const struct corner *a = &corners[k], *b = &corners[(k + 1) % 3];
+        const struct residual_corner *a = &corners[k], *b = &corners[(k + 1) % 3];
         double low = fmin(a->y, b->y), high = fmax(a->y, b->y);
         bool meets = from_below ? low < y && y <= high : low <= y && y < high;
         if (!meets) continue;
@@ -113,13 +109,13 @@ static void scan_row(const struct scan *scan, int64_t row, double left, double r
         double q = east_factor * offset * offset + north_part;
         double height_m = height->constant + height->by_y * (double)row + height->by_x * (double)x;
         double lifted_m = lifted->constant + lifted->by_y * (double)row + lifted->by_x * (double)x;
-        add(&scan->residuals->height, post_m - height_m, scan->tile_x + x, lattice_y);
-        add(&scan->residuals->drawn, post_m - q - lifted_m, scan->tile_x + x, lattice_y);
+        residual_add(&scan->residuals->height, post_m - height_m, scan->tile_x + x, lattice_y);
+        residual_add(&scan->residuals->drawn, post_m - q - lifted_m, scan->tile_x + x, lattice_y);
     }
     scan->residuals->posts += (uint64_t)(end - first);
 }
 
-static void scan_triangle(const struct scan *scan, const struct corner corners[3]) {
+static void scan_triangle(const struct scan *scan, const struct residual_corner corners[3]) {
     const struct post_block *block = scan->block;
     double low = fmin(corners[0].y, fmin(corners[1].y, corners[2].y));
     double high = fmax(corners[0].y, fmax(corners[1].y, corners[2].y));
@@ -167,7 +163,6 @@ static struct scan scan_of(const struct lattice *lattice, struct tile_id id, con
                          .residuals = residuals,
                          .tile_x = window.x,
                          .tile_y = window.y,
-                         .span = lattice_tile_span(lattice, id.zoom),
                          .right = window.columns,
                          .top = window.rows,
                          .with_east = with_east,
@@ -175,25 +170,45 @@ static struct scan scan_of(const struct lattice *lattice, struct tile_id id, con
 }
 
 /* Triangles without a positive area lie over no posts. */
-static void scan_corners(const struct scan *scan, const struct corner corners[3]) {
+static void scan_corners(const struct scan *scan, const struct residual_corner corners[3]) {
     double area = (corners[1].x - corners[0].x) * (corners[2].y - corners[0].y) -
                   (corners[2].x - corners[0].x) * (corners[1].y - corners[0].y);
     if (area > 0) scan_triangle(scan, corners);
 }
 
+static struct residual_corner place_of(const struct tile_frame *frame, const struct lattice_window *window,
+                                       int64_t span, const struct decoded_tile *tile, uint32_t vertex) {
+    double x = position_steps(tile->u[vertex], span), y = position_steps(tile->v[vertex], span);
+    if (tile->u[vertex] == frame->right) x = window->columns; /* where the lattice cuts a tile it ends at a post, */
+    if (tile->v[vertex] == frame->top) y = window->rows;      /* whose code is rounded */
+    return (struct residual_corner){x, y, decoded_height_m(tile, vertex)};
+}
+
+void residual_tile_places(const struct lattice *lattice, struct tile_id id, const struct decoded_tile *tile,
+                          struct residual_corner *places) {
+    struct tile_frame frame = tile_frame_of(lattice, id, true);
+    struct lattice_window window = lattice_tile_window(lattice, id);
+    for (uint32_t i = 0; i < tile->vertex_count; i++)
+        places[i] = place_of(&frame, &window, lattice_tile_span(lattice, id.zoom), tile, i);
+}
+
+void residual_mesh_corners(const struct post_mesh *mesh, uint32_t triangle, struct residual_corner corners[3]) {
+    for (int k = 0; k < 3; k++) {
+        const struct scree_vertex *vertex = &mesh->vertices[mesh->corners[3 * (size_t)triangle + (size_t)k]];
+        corners[k] = (struct residual_corner){vertex->x, vertex->y, vertex->height * mesh->height_unit_m};
+    }
+}
+
 void residuals_add(const struct lattice *lattice, struct tile_id id, const struct decoded_tile *tile,
                    const struct post_block *block, bool with_east, bool with_north, struct residuals *residuals) {
     struct tile_frame frame = tile_frame_of(lattice, id, true);
+    struct lattice_window window = lattice_tile_window(lattice, id);
     struct scan scan = scan_of(lattice, id, block, with_east, with_north, residuals);
     for (uint32_t t = 0; t < tile->triangle_count; t++) {
-        struct corner corners[3];
-        for (int k = 0; k < 3; k++) {
-            uint32_t vertex = tile->corners[3 * (size_t)t + (size_t)k];
-            double x = position_steps(tile->u[vertex], scan.span), y = position_steps(tile->v[vertex], scan.span);
-            if (tile->u[vertex] == frame.right) x = scan.right; /* where the lattice cuts a tile it ends at a post, */
-            if (tile->v[vertex] == frame.top) y = scan.top;     /* whose code is rounded */
-            corners[k] = (struct corner){x, y, decoded_height_m(tile, vertex)};
-        }
+        struct residual_corner corners[3];
+        for (size_t k = 0; k < 3; k++)
+            corners[k] =
+                place_of(&frame, &window, lattice_tile_span(lattice, id.zoom), tile, tile->corners[3 * (size_t)t + k]);
         scan_corners(&scan, corners);
     }
 }
@@ -202,11 +217,8 @@ void residuals_add_posts(const struct lattice *lattice, struct tile_id id, const
                          const struct post_block *block, bool with_east, bool with_north, struct residuals *residuals) {
     struct scan scan = scan_of(lattice, id, block, with_east, with_north, residuals);
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-        struct corner corners[3];
-        for (int k = 0; k < 3; k++) {
-            const struct scree_vertex *vertex = &mesh->vertices[mesh->corners[3 * (size_t)t + (size_t)k]];
-            corners[k] = (struct corner){vertex->x, vertex->y, vertex->height * mesh->height_unit_m};
-        }
+        struct residual_corner corners[3];
+        residual_mesh_corners(mesh, t, corners);
         scan_corners(&scan, corners);
     }
 }

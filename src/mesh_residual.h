@@ -53,6 +53,22 @@ struct post_mesh {
 void residuals_add_posts(const struct lattice *lattice, struct tile_id id, const struct post_mesh *mesh,
                          const struct post_block *block, bool with_east, bool with_north, struct residuals *residuals);
 
+/* ---- for measures at other places than posts ---- */
+
+/* In lattice steps from the tile's south-western corner. */
+struct residual_corner {
+    double x, y, height_m;
+};
+/* Of all vertices: the posts that their codes name, or where the codes say. */
+void residual_tile_places(const struct lattice *lattice, struct tile_id id, const struct decoded_tile *tile,
+                          struct residual_corner *places);
+void residual_mesh_corners(const struct post_mesh *mesh, uint32_t triangle, struct residual_corner corners[3]);
+
+/* Books a difference at a place in lattice steps. */
+void residual_add(struct residual *residual, double difference_m, int64_t x, int64_t y);
+
+/* ---- figures ---- */
+
 double residual_mean_m(const struct residual *residual, uint64_t posts);
 double residual_rms_m(const struct residual *residual, uint64_t posts);
 

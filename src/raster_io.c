@@ -398,6 +398,14 @@ const struct raster_summary *raster_summary(const struct raster *raster) {
     return &raster->summary;
 }
 
+void raster_summary_free(struct raster_summary *summary) {
+    free(summary->crs_wkt);
+    free(summary->datum);
+    free(summary->filtered);
+    free(summary->attribution);
+    *summary = (struct raster_summary){0};
+}
+
 void raster_free(struct raster *raster) {
     if (raster == NULL) return;
     free(raster->placement.layers);
@@ -410,10 +418,7 @@ void raster_free(struct raster *raster) {
     if (raster->filter_path != NULL) VSIUnlink(raster->filter_path);
     free(raster->filter_path);
     free(raster->source_srs);
-    free(raster->summary.crs_wkt);
-    free(raster->summary.datum);
-    free(raster->summary.filtered);
-    free(raster->summary.attribution);
+    raster_summary_free(&raster->summary);
     free(raster);
 }
 

@@ -47,6 +47,9 @@ struct raster_summary {
     char *attribution;                 /* from the inputs' metadata; "" when they have none */
 };
 
+/* Its strings; fine on a zeroed one. */
+void raster_summary_free(struct raster_summary *summary);
+
 struct raster;
 struct raster_reader;
 

@@ -53,12 +53,12 @@ static int64_t steps_from(double coordinate, double origin, double spacing) {
 }
 
 /* The lattice's steps are counted from its origin's multiple of them, so that no place is rounded twice. */
-static int64_t post_x(const struct lattice *lattice, double x) {
+int64_t tin_place_x(const struct lattice *lattice, double x) {
     if (lattice->profile == PROFILE_GEODETIC) return steps_from(x, lattice->west, lattice->spacing_x);
     return steps_from(x, 0, lattice->spacing_x) - steps_from(lattice->west, 0, lattice->spacing_x);
 }
 
-static int64_t post_y(const struct lattice *lattice, double y) {
+int64_t tin_place_y(const struct lattice *lattice, double y) {
     if (lattice->profile == PROFILE_GEODETIC) return steps_from(y, lattice->south, lattice->spacing_y);
     return steps_from(y, 0, lattice->spacing_y) - steps_from(lattice->south, 0, lattice->spacing_y);
 }
@@ -110,8 +110,8 @@ static void count_points(const struct placing *placing, const struct lattice *la
     uint32_t columns = range->x_last - range->x_first + 1;
     for (uint32_t i = 0; i < placing->most_tiles; i++) placing->counts[i] = 0;
     for (uint32_t i = 0; i < tin->point_count; i++) {
-        uint32_t x = (uint32_t)(post_x(lattice, tin->points[i].x) / span);
-        uint32_t y = (uint32_t)(post_y(lattice, tin->points[i].y) / span);
+        uint32_t x = (uint32_t)(tin_place_x(lattice, tin->points[i].x) / span);
+        uint32_t y = (uint32_t)(tin_place_y(lattice, tin->points[i].y) / span);
         x = (x < range->x_last ? x : range->x_last) - range->x_first;
         y = (y < range->y_last ? y : range->y_last) - range->y_first;
         placing->counts[y * columns + x]++;
@@ -329,8 +329,9 @@ static enum scree_status choose_geodetic(const struct placing *placing, struct t
         *place = (struct tin_place){.lattice = lattice_geodetic(finest)};
         const struct lattice *lattice = &place->lattice;
         if (longer_side(placing) / lattice->spacing_x > MOST_STEPS) continue;
-        const int64_t box[4] = {post_x(lattice, placing->bounds[WEST]), post_y(lattice, placing->bounds[SOUTH]),
-                                post_x(lattice, placing->bounds[EAST]), post_y(lattice, placing->bounds[NORTH])};
+        const int64_t box[4] = {
+            tin_place_x(lattice, placing->bounds[WEST]), tin_place_y(lattice, placing->bounds[SOUTH]),
+            tin_place_x(lattice, placing->bounds[EAST]), tin_place_y(lattice, placing->bounds[NORTH])};
         status = settle(placing, box, set_geodetic, place, error);
         fits = make_frame(place);
     }
@@ -354,7 +355,7 @@ enum scree_status tin_place_choose(const struct tin *tin, const struct tin_place
 
 void tin_place_points(const struct tin *tin, const struct tin_place *place, struct tin_post *posts) {
     for (uint32_t i = 0; i < tin->point_count; i++)
-        posts[i] = (struct tin_post){.x = (int32_t)(post_x(&place->lattice, tin->points[i].x) - place->x),
-                                     .y = (int32_t)(post_y(&place->lattice, tin->points[i].y) - place->y),
+        posts[i] = (struct tin_post){.x = (int32_t)(tin_place_x(&place->lattice, tin->points[i].x) - place->x),
+                                     .y = (int32_t)(tin_place_y(&place->lattice, tin->points[i].y) - place->y),
                                      .height_m = (float)tin->points[i].z};
 }

@@ -41,7 +41,12 @@ double tin_mean_distance(const struct tin *tin);
 enum scree_status tin_place_choose(const struct tin *tin, const struct tin_place_options *options,
                                    struct tin_place *place, struct scree_error *error);
 
-/* The points on the lattice, heights as floats; slopes stay 0. `posts` has room for all. */
+/* The post that a place is rounded to; in the local profile the lattice begins at a multiple of its step. */
+int64_t tin_place_x(const struct lattice *lattice, double x);
+int64_t tin_place_y(const struct lattice *lattice, double y);
+
+/* The points on the lattice, from place->x and place->y on, heights as floats; slopes stay 0. `posts` has room for all.
+ */
 void tin_place_points(const struct tin *tin, const struct tin_place *place, struct tin_post *posts);
 
 #endif

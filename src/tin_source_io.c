@@ -6,7 +6,6 @@
 #include "src/tin_step.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #define LEAST_POWER (-4) /* of the quantum of heights, in their own unit */
 #define MOST_POWER  1
@@ -111,8 +110,6 @@ cleanup:
 
 void tin_source_release(struct tin_source *source) {
     tin_lattice_release(&source->placed);
-    free(source->summary.crs_wkt);
-    free(source->summary.datum);
-    free(source->summary.attribution);
+    raster_summary_free(&source->summary);
     *source = (struct tin_source){0};
 }

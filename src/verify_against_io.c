@@ -80,59 +80,71 @@ static enum scree_status measure_window(struct measure *measure, struct raster_r
     return SCREE_OK;
 }
 
-enum scree_status verify_open_source(const struct raster_options *options, const struct lattice *lattice,
-                                     struct raster **raster, struct scree_error *error) {
-    enum scree_status status = raster_open(options, raster, error);
-    if (status != SCREE_OK) return status;
-    const struct raster_summary *summary = raster_summary(*raster);
-    if (lattice->profile == PROFILE_LOCAL && (summary->columns != lattice->columns || summary->rows != lattice->rows))
-        return scree_fail(error, SCREE_E_ARGUMENT,
-                          "%s: has %lld x %lld pixels, but the terrain was built from %lld x %lld; use the same "
-                          "inputs and options as for the build",
-                          options->inputs[0], (long long)summary->columns, (long long)summary->rows,
-                          (long long)lattice->columns, (long long)lattice->rows);
-    return raster_place(*raster, lattice, error);
+static enum scree_status measure_posts(struct measure *measure, const struct verify_source *source,
+                                       verify_progress *progress, void *context) {
+    struct lattice_window windows[2];
+    int window_count = raster_windows(source->raster, windows);
+    float *heights_m =
+        scree_allocate(measure->memory, (size_t)BLOCK_POSTS * BLOCK_POSTS, sizeof *heights_m, "posts", measure->error);
+    enum scree_status status = heights_m == NULL ? measure->error->status : SCREE_OK;
+    for (int i = 0; i < window_count && status == SCREE_OK; i++)
+        status = measure_window(measure, source->reader, windows[i], heights_m, (double)i / window_count,
+                                (i + 1.0) / window_count, progress, context);
+    scree_release(measure->memory, heights_m);
+    return status;
+}
+
+static enum scree_status measure_points(struct measure *measure, struct verify_source *source,
+                                        verify_progress *progress, void *context) {
+    const struct lattice *lattice = &measure->set->layer.lattice;
+    uint64_t total = 0, done = 0;
+    for (int zoom = 0; zoom <= lattice->finest_zoom; zoom++) total += measure->set->tiles[zoom].count;
+    for (int zoom = 0; zoom <= lattice->finest_zoom; zoom++)
+        for (uint32_t i = 0; i < measure->set->tiles[zoom].count; i++) {
+            struct tile_id id = measure->set->tiles[zoom].ids[i];
+            struct lattice_window window = lattice_tile_window(lattice, id);
+            if (progress != NULL) progress(context, (double)++done / (double)total);
+            if (window.columns == 0 || !residual_points_touch(&source->points, &window)) continue;
+            enum scree_status status = hold(measure, id);
+            if (status != SCREE_OK) return status;
+            status = residual_points_add(lattice, id, &measure->held[zoom], id.x + 1 == lattice_tiles_x(lattice, zoom),
+                                         id.y + 1 == lattice_tiles_y(lattice, zoom), &source->points,
+                                         &measure->against->zooms[zoom], measure->error);
+            if (status != SCREE_OK) return status;
+        }
+    return SCREE_OK;
 }
 
 enum scree_status verify_against(struct scree_memory *memory, const struct terrain_set *set,
                                  struct raster_options options, verify_progress *progress, void *context,
                                  struct against *against, struct scree_error *error) {
     struct measure measure = {.memory = memory, .set = set, .against = against, .error = error};
-    const struct lattice *lattice = &set->layer.lattice;
-    struct raster *raster = NULL;
-    struct raster_reader *reader = NULL;
-    struct lattice_window windows[2];
-    float *heights_m = NULL;
+    const struct verify_built built = {&set->layer.lattice, set->layer.max_zoom, set->layer.bounds};
+    struct verify_source source = {0};
     enum scree_status status = SCREE_E_MEMORY;
-    options.profile = lattice->profile;
     against->zooms = scree_allocate(memory, MAX_ZOOM + 1, sizeof *against->zooms, "sums of errors", error);
     if (against->zooms == NULL) goto cleanup;
-    heights_m = scree_allocate(memory, (size_t)BLOCK_POSTS * BLOCK_POSTS, sizeof *heights_m, "posts", error);
-    if (heights_m == NULL) goto cleanup;
-    status = verify_open_source(&options, lattice, &raster, error);
-    if (status == SCREE_OK) status = raster_reader_new(raster, &reader, error);
+    status = verify_source_open(memory, &options, &built, &source, error);
     if (status != SCREE_OK) goto cleanup;
-    int window_count = raster_windows(raster, windows);
-    for (int i = 0; i < window_count && status == SCREE_OK; i++)
-        status = measure_window(&measure, reader, windows[i], heights_m, (double)i / window_count,
-                                (i + 1.0) / window_count, progress, context);
+    against->is_of_points = source.is_tin;
+    against->finest = verify_source_finest(&source, &built);
+    status = source.is_tin ? measure_points(&measure, &source, progress, context)
+                           : measure_posts(&measure, &source, progress, context);
 cleanup:
     for (int zoom = MAX_ZOOM; zoom >= 0; zoom--) decoded_tile_free(memory, &measure.held[zoom]);
-    raster_reader_free(reader);
-    raster_free(raster);
-    scree_release(memory, heights_m);
+    verify_source_close(&source);
     if (status != SCREE_OK) against_free(memory, against);
     return status;
 }
 
 void verify_against_judge(const struct terrain_set *set, const struct against *against, struct verify_report *report) {
     const struct layer_info *layer = &set->layer;
-    int finest = layer->lattice.finest_zoom;
+    int finest = against->finest;
     const struct residuals *sums = &against->zooms[finest];
     const struct layer_zoom_info *told = &layer->zooms[finest];
     if (!layer->is_ours || set->tiles[finest].count == 0) return; /* built with a maximum zoom: no exact bound */
     if (sums->posts == 0) {
-        report_broken(report, PROMISE_ERROR, "no post of the source lies under a tile of zoom %d", finest);
+        report_broken(report, PROMISE_ERROR, "nothing of the source lies under a tile of zoom %d", finest);
     } else if (sums->drawn.max_m <= told->tolerance_m * TOLERANCE_SLACK) {
         report_held(report, PROMISE_ERROR);
     } else {

@@ -38,10 +38,12 @@ void verify_print_end(const struct verify_report *report) {
 
 static void print_errors(const struct terrain_set *set, const struct against *against) {
     const struct layer_info *layer = &set->layer;
-    printf("\nVertical error against the source, metres, at every post of the finest lattice.\n"
+    printf("\nVertical error against the source, metres, at every %s.\n"
            "  height: as a client reads heights; drawn: flat triangles on the curved earth\n\n"
            "                             |                 height                  |             drawn             |\n"
-           "  zoom       posts tolerance |       max       p99       RMS      mean |       max       p99       RMS |");
+           "  zoom      %s tolerance |       max       p99       RMS      mean |       max       p99       RMS |",
+           against->is_of_points ? "point of the triangles" : "post of the finest lattice",
+           against->is_of_points ? "points" : " posts");
     printf(" max is at\n");
     for (int zoom = 0; zoom <= MAX_ZOOM; zoom++) {
         const struct residuals *sums = &against->zooms[zoom];
@@ -72,8 +74,8 @@ void verify_print_text(const struct terrain_set *set, const struct verify_report
     }
     if (!quiet)
         printf("%s: %s, zooms 0 to %d, %" PRIu64 " tiles, %" PRIu64 " triangles, %.1f MB%s\n\n", set->folder,
-               set->layer.lattice.profile == PROFILE_GEODETIC ? "geodetic" : "local", set->layer.lattice.finest_zoom,
-               all.tiles, all.triangles, (double)all.bytes / 1e6,
+               set->layer.lattice.profile == PROFILE_GEODETIC ? "geodetic" : "local", set->layer.max_zoom, all.tiles,
+               all.triangles, (double)all.bytes / 1e6,
                set->layer.is_ours ? "" : " (not made by scree: format and geometry are checked)");
     verify_print_promises(report, quiet);
     if (quiet) return;

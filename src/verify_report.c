@@ -27,7 +27,7 @@ static const struct {
     [PROMISE_STREAM_PLACE] = {"stream_place", "headers say what scree.json and file names say"},
     [PROMISE_STREAM_SCALES] = {"stream_scales", "scales are on the ladder and grow finer in order"},
     [PROMISE_STREAM_FAMILIES] = {"stream_families", "a tile at its finest is its children at their coarsest"},
-    [PROMISE_STREAM_ERROR] = {"stream_error", "no post is farther off than its stream says"},
+    [PROMISE_STREAM_ERROR] = {"stream_error", "no post or point is farther off than its stream says"},
 };
 
 const char *promise_name(enum promise promise) {

@@ -1,6 +1,6 @@
 #include "src/verify_stream_against_io.h"
 
-#include "src/verify_against_io.h"
+#include "src/verify_source_io.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -15,8 +15,8 @@
 struct measure {
     struct scree_memory *memory;
     const struct stream_set *set;
-    const struct raster *raster;
-    struct raster_reader *reader;
+    struct verify_source source;
+    int finest;                    /* the zoom that is judged */
     float *heights_m;              /* of a block */
     struct residuals *scratch;     /* of one mesh over one block */
     double max_m[SCREE_MAX_RUNGS]; /* of the tile in hand, by rung */
@@ -33,9 +33,10 @@ static int64_t smaller(int64_t a, int64_t b) {
     return a < b ? a : b;
 }
 
-/* The tile at all of its rungs over one block of posts. */
+/* The tile at all of its rungs over one block of posts; NULL: over the points of a TIN. */
 static void measure_block(struct measure *measure, struct tile_id id, struct scree_player *player,
                           const struct post_block *block) {
+    const struct lattice *lattice = &measure->set->info.lattice;
     const struct scree_stream_header *header = scree_player_header(player);
     for (uint32_t i = 0; i < header->rung_count; i++) {
         struct scree_arrays arrays;
@@ -44,7 +45,10 @@ static void measure_block(struct measure *measure, struct tile_id id, struct scr
         const struct post_mesh mesh = {arrays.vertices, arrays.indices, arrays.triangle_count,
                                        ldexp(1, header->height_exponent)};
         memset(measure->scratch, 0, sizeof *measure->scratch);
-        residuals_add_posts(&measure->set->info.lattice, id, &mesh, block, true, true, measure->scratch);
+        if (block != NULL)
+            residuals_add_posts(lattice, id, &mesh, block, true, true, measure->scratch);
+        else
+            residual_points_add_mesh(lattice, id, &mesh, true, true, &measure->source.points, measure->scratch);
         measure->max_m[i] = fmax(measure->max_m[i], measure->scratch->drawn.max_m);
     }
 }
@@ -59,8 +63,8 @@ static enum scree_status measure_window(struct measure *measure, struct tile_id 
         for (int64_t x = x_first; x < x_end; x += BLOCK_POSTS) {
             struct post_block block = {x, y, (int32_t)smaller(BLOCK_POSTS, x_end - x),
                                        (int32_t)smaller(BLOCK_POSTS, y_end - y), measure->heights_m};
-            enum scree_status status = raster_read(measure->reader, x, y, block.columns, block.rows, measure->heights_m,
-                                                   block.columns, measure->error);
+            enum scree_status status = raster_read(measure->source.reader, x, y, block.columns, block.rows,
+                                                   measure->heights_m, block.columns, measure->error);
             if (status != SCREE_OK) return status;
             measure_block(measure, id, player, &block);
         }
@@ -70,7 +74,7 @@ static enum scree_status measure_window(struct measure *measure, struct tile_id 
 static void book(struct measure *measure, struct tile_id id, const struct scree_stream_header *header) {
     struct stream_against_zoom *zoom = &measure->against->zooms[id.zoom];
     double slack = header->profile == SCREE_GEODETIC ? GLOBE_SLACK : LOCAL_SLACK;
-    bool is_finest = id.zoom == measure->set->info.lattice.finest_zoom;
+    bool is_finest = id.zoom == measure->finest;
     for (uint32_t i = 0; i < header->rung_count; i++) {
         double stated_m = header->rungs[i].max_error_m, measured_m = measure->max_m[i];
         bool is_beyond = measured_m > stated_m * slack;
@@ -97,20 +101,32 @@ static bool touches(const struct lattice_window *a, const struct lattice_window 
     return a->x <= b->x + b->columns && b->x <= a->x + a->columns && a->y <= b->y + b->rows && b->y <= a->y + a->rows;
 }
 
+/* Where the source is, of which a tile is measured; how many windows. A TIN has its points in cells. */
+static int find_windows(const struct measure *measure, struct lattice_window windows[2]) {
+    return measure->source.is_tin ? 0 : raster_windows(measure->source.raster, windows);
+}
+
+static bool is_covered(const struct measure *measure, const struct lattice_window *tile) {
+    struct lattice_window windows[2];
+    int window_count = find_windows(measure, windows);
+    bool found = measure->source.is_tin && residual_points_touch(&measure->source.points, tile);
+    for (int i = 0; i < window_count; i++) found = found || touches(tile, &windows[i]);
+    return found && tile->columns > 0;
+}
+
 static enum scree_status measure_tile(struct measure *measure, struct tile_id id) {
     struct lattice_window windows[2], tile = lattice_tile_window(&measure->set->info.lattice, id);
-    int window_count = raster_windows(measure->raster, windows);
+    int window_count = find_windows(measure, windows);
     struct scree_error why = {0};
     struct scree_player *player;
-    bool is_covered = false;
-    for (int i = 0; i < window_count; i++) is_covered = is_covered || touches(&tile, &windows[i]);
-    if (tile.columns == 0 || !is_covered) return SCREE_OK;
+    if (!is_covered(measure, &tile)) return SCREE_OK;
     enum scree_status status = stream_set_play(measure->memory, measure->set, id, &player, NULL, &why);
     if (status == SCREE_E_MEMORY) return scree_fail(measure->error, status, "%s", why.text);
     if (status != SCREE_OK) return SCREE_OK;
     const struct scree_stream_header *header = scree_player_header(player);
     bool is_placed = header->columns == tile.columns && header->rows == tile.rows;
     memset(measure->max_m, 0, sizeof measure->max_m);
+    if (is_placed && measure->source.is_tin) measure_block(measure, id, player, NULL);
     for (int i = 0; i < window_count && is_placed && status == SCREE_OK; i++)
         if (touches(&tile, &windows[i])) status = measure_window(measure, id, player, &tile, &windows[i]);
     if (status == SCREE_OK && is_placed) book(measure, id, header);
@@ -136,24 +152,20 @@ enum scree_status verify_streams_against(struct scree_memory *memory, const stru
                                          struct stream_against *against, struct verify_report *report,
                                          struct scree_error *error) {
     struct measure *measure = scree_allocate(memory, 1, sizeof *measure, "a measure of errors", error);
-    const struct lattice *lattice = &set->info.lattice;
-    struct raster *raster = NULL;
+    const struct verify_built built = {&set->info.lattice, set->info.max_zoom, set->info.bounds};
     enum scree_status status = SCREE_E_MEMORY;
     if (measure == NULL) return SCREE_E_MEMORY;
     *measure = (struct measure){.memory = memory, .set = set, .against = against, .report = report, .error = error};
-    options.profile = lattice->profile;
     against->zooms = scree_allocate(memory, MAX_ZOOM + 1, sizeof *against->zooms, "sums of errors", error);
     measure->scratch = scree_allocate(memory, 1, sizeof *measure->scratch, "sums of errors", error);
     measure->heights_m =
         scree_allocate(memory, (size_t)BLOCK_POSTS * BLOCK_POSTS, sizeof *measure->heights_m, "posts", error);
     if (against->zooms == NULL || measure->scratch == NULL || measure->heights_m == NULL) goto cleanup;
-    status = verify_open_source(&options, lattice, &raster, error);
-    if (status == SCREE_OK) status = raster_reader_new(raster, &measure->reader, error);
-    measure->raster = raster;
+    status = verify_source_open(memory, &options, &built, &measure->source, error);
+    measure->finest = verify_source_finest(&measure->source, &built);
     if (status == SCREE_OK) status = measure_zooms(measure, progress, context);
 cleanup:
-    raster_reader_free(measure->reader);
-    raster_free(raster);
+    verify_source_close(&measure->source);
     scree_release(memory, measure->heights_m);
     scree_release(memory, measure->scratch);
     scree_release(memory, measure);

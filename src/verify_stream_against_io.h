@@ -1,6 +1,6 @@
 /* Streams against their source: the vertical error of every tile at every rung, at every post of the finest lattice
- * that the source covers, against what the stream says of that rung. Each zoom reads the source once; one tile and a
- * block of posts are held. */
+ * that the source covers or every point of a TIN, against what the stream says of that rung. Each zoom reads the source
+ * once; one tile and a block of posts are held. */
 #ifndef SCREE_VERIFY_STREAM_AGAINST_IO_H
 #define SCREE_VERIFY_STREAM_AGAINST_IO_H
 

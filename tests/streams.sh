@@ -66,10 +66,10 @@ expect 2 'wants a rung' extract "$out" -o "$folder/mesh.ply" --rung 1.5
 
 # verify
 expect 0 'All promises hold' verify "$out"
-expect 0 'no post is farther off than its stream says' verify "$out" --against "$folder/dem.tif"
+expect 0 'no post or point is farther off than its stream says' verify "$out" --against "$folder/dem.tif"
 expect 0 '"ok": true' verify "$folder/out" --against "$folder/dem.tif" --format json
 grep -q '"streams": {' "$folder/printed" || failed=1
-expect 1 'BROKEN .*no post is farther off' verify "$out" --against "$folder/other.tif" -q
+expect 1 'BROKEN .*no post or point is farther off' verify "$out" --against "$folder/other.tif" -q
 "$scree" verify "$out" -q >"$folder/printed" 2>&1 && lines 0
 
 # what is lost, spoilt or cut off
