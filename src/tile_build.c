@@ -179,7 +179,10 @@ enum scree_status tile_build_level(const struct tile_plan *plan, struct tile_id 
     if (status == SCREE_OK) status = tile_lock(&walk->tile, locked_step, error);
     if (status == SCREE_OK) walk->max_error_m = tile_max_error_m(&walk->tile);
     if (status == SCREE_OK) status = fit(plan, walk, id.zoom, &walk->fitted, error);
+    int rung = walk->rung; /* a base that is finer than the tile is, is all that its stream has */
+    if (record && plan->has_base && plan->base_rung > rung) walk->rung = plan->base_rung;
     if (status == SCREE_OK) status = start_recording(plan, walk, record, walk->max_error_m, error);
+    walk->rung = rung;
     if (status != SCREE_OK) tile_walk_release(walk);
     return status;
 }
