@@ -166,17 +166,36 @@ static enum scree_status look(const struct tin *tin, uint32_t edge, uint32_t oth
                       a->x + place.x, a->y + place.y, fmin(first, second), fmax(first, second));
 }
 
+/* A triangle as the tree is searched for it. */
+struct probe {
+    struct box box;
+    const struct cloud_point *corners[3];
+};
+
+/* Neither the triangle's box nor the line of one of its edges parts them: long thin triangles have large boxes. */
+static bool may_touch(const struct probe *probe, const struct box *box) {
+    if (!do_meet(&probe->box, box)) return false;
+    for (int k = 0; k < 3; k++) {
+        const struct cloud_point *a = probe->corners[k], *b = probe->corners[(k + 1) % 3];
+        const double dx = b->x - a->x, dy = b->y - a->y;
+        const double x = dy > 0 ? box->west : box->east, y = dx > 0 ? box->north : box->south; /* farthest inside */
+        if (dx * (y - a->y) - dy * (x - a->x) < 0) return false;
+    }
+    return true;
+}
+
 /* Looks along all edges near a triangle. */
 static enum scree_status look_around(const struct tin *tin, const struct edge_tree *tree, uint32_t triangle,
                                      double tolerance, struct scree_error *error) {
-    const struct cloud_point *a = corner_of(tin, 3 * triangle, 0);
-    const struct box box = both(box_of(a, corner_of(tin, 3 * triangle, 1)), box_of(a, corner_of(tin, 3 * triangle, 2)));
+    struct probe probe;
     enum scree_status status = SCREE_OK;
     uint32_t nodes[MOST_DEPTH], count = 0;
+    for (uint32_t k = 0; k < 3; k++) probe.corners[k] = corner_of(tin, 3 * triangle, k);
+    probe.box = both(box_of(probe.corners[0], probe.corners[1]), box_of(probe.corners[0], probe.corners[2]));
     nodes[count++] = 1;
     while (count > 0 && status == SCREE_OK) {
         const uint32_t node = nodes[--count];
-        if (!do_meet(&tree->boxes[node], &box)) continue;
+        if (!may_touch(&probe, &tree->boxes[node])) continue;
         if (node < tree->leaf_count) {
             nodes[count++] = 2 * node;
             nodes[count++] = 2 * node + 1;
@@ -185,7 +204,7 @@ static enum scree_status look_around(const struct tin *tin, const struct edge_tr
         const uint64_t first = (uint64_t)(node - tree->leaf_count) * LEAF_EDGES;
         for (uint64_t i = first; i < first + LEAF_EDGES && i < tree->edge_count && status == SCREE_OK; i++) {
             const struct box edge_box = box_of(corner_of(tin, tree->edges[i], 0), corner_of(tin, tree->edges[i], 1));
-            if (tree->edges[i] / 3 != triangle && do_meet(&edge_box, &box))
+            if (tree->edges[i] / 3 != triangle && may_touch(&probe, &edge_box))
                 status = look(tin, tree->edges[i], triangle, tolerance, error);
         }
     }

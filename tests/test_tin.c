@@ -15,18 +15,23 @@ static uint64_t chance(uint64_t *counter, uint64_t below) {
     return counter_random(11, (*counter)++) % below;
 }
 
+/* Room for one more: twice as much whenever the count is a power of two. */
+static void *grow(struct tin *tin, void *block, uint32_t count, size_t size_bytes) {
+    if (count != 0 && (count & (count - 1)) != 0) return block;
+    void *grown = scree_reallocate(tin->memory, block, count == 0 ? 1 : 2 * (size_t)count, size_bytes, "", NULL);
+    CU_ASSERT_PTR_NOT_NULL_FATAL(grown);
+    return grown;
+}
+
 static uint32_t add_point(struct tin *tin, double x, double y, double z) {
-    tin->points = scree_reallocate(tin->memory, tin->points, tin->point_count + 1, sizeof *tin->points, "", NULL);
-    CU_ASSERT_PTR_NOT_NULL_FATAL(tin->points);
+    tin->points = grow(tin, tin->points, tin->point_count, sizeof *tin->points);
     tin->points[tin->point_count] = (struct cloud_point){x, y, z};
     return tin->point_count++;
 }
 
 static void add_triangle(struct tin *tin, uint32_t a, uint32_t b, uint32_t c) {
-    tin->corners = scree_reallocate(tin->memory, tin->corners, 3 * ((size_t)tin->triangle_count + 1),
-                                    sizeof *tin->corners, "", NULL);
-    CU_ASSERT_PTR_NOT_NULL_FATAL(tin->corners);
     const uint32_t corners[3] = {a, b, c};
+    tin->corners = grow(tin, tin->corners, tin->triangle_count, sizeof corners);
     memcpy(&tin->corners[3 * (size_t)tin->triangle_count++], corners, sizeof corners);
 }
 
@@ -351,6 +356,27 @@ static void test_ramp(void) {
     }
 }
 
+/* Long thin triangles side by side, every one's box over half of all edges: they are told apart all the same. A search
+ * by boxes alone takes minutes. */
+static void test_long_triangles(void) {
+    struct scree_memory memory = {0};
+    struct tin tin = {.memory = &memory};
+    struct tin_mended mended;
+    struct scree_error error = {0};
+    const uint32_t count = 20000;
+    for (uint32_t i = 0; i <= count; i++) {
+        add_point(&tin, i * 0.1, 0, 0);
+        add_point(&tin, i * 0.1 + 6000, 6000, 1);
+    }
+    for (uint32_t i = 0; i < 2 * count; i += 2) {
+        add_triangle(&tin, i, i + 2, i + 3);
+        add_triangle(&tin, i, i + 3, i + 1);
+    }
+    if (tin_mend(&tin, &mended, &error) != SCREE_OK) CU_FAIL(error.text);
+    CU_ASSERT_EQUAL(tin.triangle_count, 2 * count);
+    tin_release(&tin);
+}
+
 /* ---- all pairs ---- */
 
 /* Twice the area of whole coordinates. */
@@ -465,6 +491,7 @@ int suite_tin(void) {
     CU_ADD_TEST(suite, test_drawn);
     CU_ADD_TEST(suite, test_borders);
     CU_ADD_TEST(suite, test_ramp);
+    CU_ADD_TEST(suite, test_long_triangles);
     CU_ADD_TEST(suite, test_all_pairs);
     CU_ADD_TEST(suite, test_no_memory);
     return 0;
