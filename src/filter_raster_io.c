@@ -5,6 +5,7 @@
 #include "src/file_io.h"
 #include "src/raster_parts_io.h"
 
+#include <cpl_conv.h>
 #include <cpl_vsi.h>
 #include <gdal.h>
 #include <ogr_srs_api.h>
@@ -17,6 +18,7 @@
 #define BYTES_A_MB      1000000
 #define NODATA          (-32768.0)
 #define MEMORY_FILE     "/vsimem/scree-filtered.tif"
+#define CRS_FILE        "/vsimem/scree-crs.tif"
 #define LOWEST_HEIGHT_M (-1e29) /* what is lower is FILTER_NO_HEIGHT_M */
 
 static char *copied(struct scree_memory *memory, const char *text, struct scree_error *error) {
@@ -107,6 +109,42 @@ void filter_raster_free(struct scree_memory *memory, struct filter_raster *raste
 
 /* ---- writing ---- */
 
+/* A CRS as GeoTIFF tells it: a vertical part without a code is lost, or turned upwards. NULL: none at all. */
+static OGRSpatialReferenceH told_new(const char *crs_wkt) {
+    const bool is_set = CPLGetConfigOption("GTIFF_REPORT_COMPD_CS", NULL) != NULL;
+    OGRSpatialReferenceH srs = OSRNewSpatialReference(NULL), told = NULL;
+    GDALDatasetH dataset = GDALCreate(GDALGetDriverByName("GTiff"), CRS_FILE, 1, 1, 1, GDT_Byte, NULL);
+    if (dataset != NULL && OSRSetFromUserInput(srs, crs_wkt) == OGRERR_NONE) GDALSetSpatialRef(dataset, srs);
+    OSRDestroySpatialReference(srs);
+    GDALClose(dataset);
+    if (!is_set) CPLSetThreadLocalConfigOption("GTIFF_REPORT_COMPD_CS", "YES");
+    dataset = GDALOpenEx(CRS_FILE, GDAL_OF_RASTER | GDAL_OF_READONLY, NULL, NULL, NULL);
+    if (!is_set) CPLSetThreadLocalConfigOption("GTIFF_REPORT_COMPD_CS", NULL);
+    srs = dataset != NULL ? GDALGetSpatialRef(dataset) : NULL;
+    if (srs != NULL) told = OSRClone(srs);
+    if (told != NULL) OSRSetAxisMappingStrategy(told, OAMS_TRADITIONAL_GIS_ORDER);
+    GDALClose(dataset);
+    VSIUnlink(CRS_FILE);
+    return told;
+}
+
+/* 1, or -1 where the CRS counts depths: readers turn heights of such a raster. */
+static float sign_of_heights(const char *crs_wkt) {
+    PJ_CONTEXT *proj = raster_proj_new();
+    double metres = 1;
+    if (proj != NULL) raster_vertical_metres(proj, crs_wkt, &metres);
+    proj_context_destroy(proj);
+    return metres < 0 ? -1 : 1;
+}
+
+static float sign_of_told(OGRSpatialReferenceH told) {
+    static const char *const wkt2[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", NULL};
+    char *wkt = NULL;
+    const float sign = OSRExportToWktEx(told, &wkt, wkt2) == OGRERR_NONE ? sign_of_heights(wkt) : 1;
+    CPLFree(wkt);
+    return sign;
+}
+
 static bool describe(const struct filter_raster *raster, GDALDatasetH dataset) {
     const double north = raster->south + (raster->rows - 1) * raster->spacing_y;
     double transform[6] = {raster->west - raster->spacing_x / 2,
@@ -120,28 +158,11 @@ static bool describe(const struct filter_raster *raster, GDALDatasetH dataset) {
     if (raster->attribution[0] != '\0')
         fine = fine && GDALSetMetadataItem(dataset, "TIFFTAG_COPYRIGHT", raster->attribution, NULL) == CE_None;
     if (raster->is_outside != NULL) fine = fine && GDALSetRasterNoDataValue(band, NODATA) == CE_None;
-    if (raster->crs_wkt[0] == '\0') return fine;
-    OGRSpatialReferenceH srs = OSRNewSpatialReference(NULL);
-    OSRSetAxisMappingStrategy(srs, OAMS_TRADITIONAL_GIS_ORDER);
-    fine =
-        fine && OSRSetFromUserInput(srs, raster->crs_wkt) == OGRERR_NONE && GDALSetSpatialRef(dataset, srs) == CE_None;
-    OSRDestroySpatialReference(srs);
     return fine;
 }
 
-/* 1, or -1 where the CRS counts depths, which the reader has turned into heights. */
-static float sign_of_heights(const struct filter_raster *raster) {
-    PJ_CONTEXT *proj = raster_proj_new();
-    double metres = 1;
-    const bool is_depth = proj != NULL && raster->crs_wkt[0] != '\0' &&
-                          raster_vertical_metres(proj, raster->crs_wkt, &metres) && metres < 0;
-    proj_context_destroy(proj);
-    return is_depth ? -1 : 1;
-}
-
-static bool fill_dataset(const struct filter_raster *raster, const float *heights_m, GDALDatasetH dataset) {
+static bool fill_dataset(const struct filter_raster *raster, const float *heights_m, float sign, GDALDatasetH dataset) {
     const int32_t columns = raster->columns;
-    const float sign = sign_of_heights(raster);
     GDALRasterBandH band = GDALGetRasterBand(dataset, 1);
     float *row_m = malloc((size_t)columns * sizeof *row_m);
     bool fine = row_m != NULL;
@@ -157,23 +178,27 @@ static bool fill_dataset(const struct filter_raster *raster, const float *height
     return fine;
 }
 
-/* The file in memory, whole; the caller has set the trap. */
-static bool make(const struct filter_raster *raster, const float *heights_m, const char *path, bool is_compressed,
-                 const struct raster_trap *trap) {
-    const char *const options[] = {"TILED=YES", "BIGTIFF=IF_SAFER", is_compressed ? "COMPRESS=DEFLATE" : NULL,
-                                   "PREDICTOR=3", NULL};
+/* The file in memory, whole; the caller has set the trap. `told` may be NULL: no CRS. */
+static bool make(const struct filter_raster *raster, const float *heights_m, float sign, OGRSpatialReferenceH told,
+                 const char *path, const char *const *options) {
     GDALDatasetH dataset = GDALCreate(GDALGetDriverByName("GTiff"), path, raster->columns, raster->rows, 1, GDT_Float32,
                                       (CSLConstList)options);
-    const bool fine = dataset != NULL && describe(raster, dataset) && fill_dataset(raster, heights_m, dataset);
-    if (dataset != NULL) GDALClose(dataset);
-    return fine && trap->text[0] == '\0';
+    bool fine = dataset != NULL && describe(raster, dataset);
+    if (told != NULL) fine = fine && GDALSetSpatialRef(dataset, told) == CE_None;
+    fine = fine && fill_dataset(raster, heights_m, sign, dataset);
+    GDALClose(dataset);
+    return fine;
 }
 
 enum scree_status filter_raster_write(const struct filter_raster *raster, const float *heights_m, const char *path,
                                       struct scree_error *error) {
+    static const char *const options[] = {"TILED=YES", "COMPRESS=DEFLATE", "PREDICTOR=3", "BIGTIFF=IF_SAFER", NULL};
     struct raster_trap trap;
     raster_trap_set(&trap);
-    const bool fine = make(raster, heights_m, MEMORY_FILE, true, &trap);
+    OGRSpatialReferenceH told = raster->crs_wkt[0] != '\0' ? told_new(raster->crs_wkt) : NULL;
+    const float sign = told != NULL ? sign_of_told(told) : 1;
+    trap.text[0] = '\0'; /* what GeoTIFF cannot tell is left out */
+    const bool fine = make(raster, heights_m, sign, told, MEMORY_FILE, options) && trap.text[0] == '\0';
     vsi_l_offset size_bytes = 0;
     const unsigned char *bytes = VSIGetMemFileBuffer(MEMORY_FILE, &size_bytes, FALSE);
     enum scree_status status = SCREE_OK;
@@ -182,16 +207,19 @@ enum scree_status filter_raster_write(const struct filter_raster *raster, const 
     else
         status = raster_trap_fail(&trap, path, error);
     VSIUnlink(MEMORY_FILE);
+    if (told != NULL) OSRDestroySpatialReference(told);
     raster_trap_clear();
     return status;
 }
 
 enum scree_status filter_raster_keep(const struct filter_raster *raster, const float *heights_m, const char *path,
                                      const char *name, struct scree_error *error) {
+    static const char *const options[] = {"TILED=YES", "BIGTIFF=IF_SAFER", NULL};
     struct raster_trap trap;
     raster_trap_set(&trap);
     enum scree_status status = SCREE_OK;
-    if (!make(raster, heights_m, path, false, &trap)) status = raster_trap_fail(&trap, name, error);
+    const bool fine = make(raster, heights_m, sign_of_heights(raster->crs_wkt), NULL, path, options);
+    if (!fine || trap.text[0] != '\0') status = raster_trap_fail(&trap, name, error);
     raster_trap_clear();
     return status;
 }

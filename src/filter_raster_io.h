@@ -30,12 +30,13 @@ enum scree_status filter_raster_read(struct scree_memory *memory, const struct r
 
 void filter_raster_free(struct scree_memory *memory, struct filter_raster *raster);
 
-/* Writes heights of the raster's posts, whole or not at all: Float32, in metres, compressed. */
+/* Writes heights of the raster's posts, whole or not at all: Float32, in metres, compressed. A vertical CRS that
+ * GeoTIFF has no words for is left out. */
 enum scree_status filter_raster_write(const struct filter_raster *raster, const float *heights_m, const char *path,
                                       struct scree_error *error);
 
-/* Keeps the same as a file of GDAL's in memory (`path` begins with /vsimem/), not compressed; whoever asks for it
- * removes it. `name` is for errors. */
+/* Keeps the same as a file of GDAL's in memory (`path` begins with /vsimem/), not compressed and without the CRS, whose
+ * vertical axis tells up from down all the same; whoever asks for it removes it. `name` is for errors. */
 enum scree_status filter_raster_keep(const struct filter_raster *raster, const float *heights_m, const char *path,
                                      const char *name, struct scree_error *error);
 

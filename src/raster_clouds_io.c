@@ -41,7 +41,7 @@ static enum scree_status grid(const struct raster_options *options, struct cloud
     return status;
 }
 
-static bool write_raster(const char *path, const struct gridded *gridded, const struct cloud_meaning *meaning) {
+static bool write_raster(const char *path, const struct gridded *gridded, double height_metres) {
     const struct cloud_posts *posts = &gridded->posts;
     char *creation[] = {"TILED=YES", "BIGTIFF=IF_SAFER", NULL};
     GDALDatasetH dataset =
@@ -51,8 +51,7 @@ static bool write_raster(const char *path, const struct gridded *gridded, const 
     double geotransform[6] = {posts->west - half, posts->spacing, 0, north, 0, -posts->spacing};
     GDALRasterBandH band = GDALGetRasterBand(dataset, 1);
     CPLErr failed = GDALSetGeoTransform(dataset, geotransform);
-    if (failed == CE_None && meaning->crs != NULL) failed = GDALSetSpatialRef(dataset, meaning->crs);
-    if (failed == CE_None && meaning->height_metres != 1) failed = GDALSetRasterScale(band, meaning->height_metres);
+    if (failed == CE_None && height_metres != 1) failed = GDALSetRasterScale(band, height_metres);
     size_t stride = (size_t)posts->columns;
     for (int row = 0; row < posts->rows && failed == CE_None; row++)
         failed = GDALRasterIO(band, GF_Write, 0, row, posts->columns, 1,
@@ -61,6 +60,15 @@ static bool write_raster(const char *path, const struct gridded *gridded, const 
     GDALFlushCache(dataset);
     GDALClose(dataset);
     return failed == CE_None;
+}
+
+static char *crs_wkt_new(OGRSpatialReferenceH crs) {
+    static const char *const wkt2[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", NULL};
+    char *wkt = NULL, *copy = NULL;
+    if (crs == NULL) return strdup("");
+    if (OSRExportToWktEx(crs, &wkt, wkt2) == OGRERR_NONE && wkt != NULL) copy = strdup(wkt);
+    CPLFree(wkt);
+    return copy;
 }
 
 enum scree_status raster_clouds_make(struct raster *raster, const struct raster_options *options, const bool *is_cloud,
@@ -86,9 +94,10 @@ enum scree_status raster_clouds_make(struct raster *raster, const struct raster_
     if (status != SCREE_OK) goto cleanup;
     snprintf(path, sizeof path, "/vsimem/scree-cloud-%p", (void *)raster);
     raster->cloud_path = strdup(path);
-    if (raster->cloud_path == NULL)
+    raster->inputs[raster->input_count].crs_wkt = crs_wkt_new(joined.meaning.crs);
+    if (raster->cloud_path == NULL || raster->inputs[raster->input_count].crs_wkt == NULL)
         status = scree_fail(error, SCREE_E_MEMORY, "no memory for a name");
-    else if (!write_raster(path, &gridded, &joined.meaning))
+    else if (!write_raster(path, &gridded, joined.meaning.height_metres))
         status = raster_trap_fail(&trap, name, error);
 cleanup:
     raster_trap_clear();

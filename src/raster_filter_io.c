@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* How pixels are read; where the result is to lie, and what is beyond, comes later. The file in memory is the one that
- * `scree filter` writes with these, but for the compression. */
+ * `scree filter` writes with these, but for the compression and the CRS, which is handed on as it is. */
 static struct raster_options reading_options(const struct raster_options *options) {
     struct raster_options reading = *options;
     reading.has_extent = false;
@@ -35,7 +35,8 @@ static enum scree_status filter(struct raster *raster, const struct raster_optio
     snprintf(path, sizeof path, "/vsimem/scree-filter-%p", (void *)raster);
     raster->filter_path = strdup(path);
     raster->summary.filtered = text_take(&text, &length_bytes);
-    if (raster->filter_path == NULL || raster->summary.filtered == NULL)
+    raster->inputs[0].crs_wkt = strdup(job.raster.crs_wkt);
+    if (raster->filter_path == NULL || raster->summary.filtered == NULL || raster->inputs[0].crs_wkt == NULL)
         status = scree_fail(error, SCREE_E_MEMORY, "no memory for words");
     else
         status = filter_raster_keep(&job.raster, job.filtered_m, path, options->inputs[0], error);

@@ -25,7 +25,7 @@ struct raster_input {
     int columns, rows;
     bool has_geotransform;
     double geotransform[6]; /* pixel corner to CRS, as GDAL has it */
-    char *crs_wkt;          /* "" when there is none */
+    char *crs_wkt;          /* "" when there is none; set before raster_input_open, it goes before the dataset's own */
     bool has_nodata, has_mask;
     bool is_wide; /* its values need more than a float */
     double nodata;
@@ -123,7 +123,8 @@ struct raster_range {
 enum scree_status raster_input_scan(struct raster *raster, const struct raster_input *input, const int window[4],
                                     struct raster_range *range, struct scree_error *error);
 
-/* raster_clouds_io.c: grids those of `inputs` that `is_cloud` marks, and makes raster->cloud_path. */
+/* raster_clouds_io.c: grids those of `inputs` that `is_cloud` marks, and makes raster->cloud_path; the next of
+ * raster->inputs is given the CRS, as GeoTIFF cannot tell every one. */
 enum scree_status raster_clouds_make(struct raster *raster, const struct raster_options *options, const bool *is_cloud,
                                      struct scree_error *error);
 

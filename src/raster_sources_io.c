@@ -25,6 +25,7 @@ void raster_input_free(struct raster_input *input) {
 static enum scree_status find_crs(const struct raster *raster, GDALDatasetH dataset, struct raster_input *input,
                                   const struct raster_trap *trap, struct scree_error *error) {
     OGRSpatialReferenceH crs = NULL;
+    if (input->crs_wkt != NULL) return SCREE_OK;
     if (raster->source_srs != NULL) {
         crs = OSRNewSpatialReference(NULL);
         if (OSRSetFromUserInput(crs, raster->source_srs) != OGRERR_NONE) {

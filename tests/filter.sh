@@ -122,9 +122,10 @@ refuses 2 'goes with --landuse' dem.tif -o to.tif --rules rules.txt
 # are filtered (HOW), and where terrain lies (WHERE); and what was built keeps its promises. GDAL words a CRS with the
 # members of its datum or without, depending on what it has seen before: that may differ.
 alike() { # FOLDER FOLDER
+    words='"crs_wkt"\|"projection"'
     for file in $(cd "$1" && find . -type f); do
         case $file in
-        *.json) grep -v '"crs_wkt"' "$1/$file" >mine && grep -v '"crs_wkt"' "$2/$file" >theirs && cmp mine theirs ;;
+        *.json) grep -v "$words" "$1/$file" >mine && grep -v "$words" "$2/$file" >theirs && cmp mine theirs ;;
         *) cmp "$1/$file" "$2/$file" ;;
         esac || return 1
     done
@@ -146,6 +147,7 @@ sed '1,/^NODATA/!s/ 5/ 900/g' grid.asc >feet.asc
 echo '<PAMDataset><PAMRasterBand band="1"><UnitType>ft</UnitType></PAMRasterBand></PAMDataset>' >feet.asc.aux.xml
 builds '--s_srs EPSG:4326 -a_nodata 900 --fill-distance -1' '--delta 0.5' \
     '--te 10.2 45.1 12 46.6 --nodata-height 3' '--products terrain' feet.asc
+builds '--s_srs EPSG:32611+5715' '--delta 1' '' '--profile local' dem.tif
 "$TOP_BUILDDIR/tests/fractal_las" -o cloud.las --points 5000 --spacing-m 30 || fail 'no cloud'
 builds '--class 2 --grid 40' '--delta 3' '' '--profile local' cloud.las
 "$scree" verify one --against cloud.las --class 2 --grid 40 >out 2>err && fail 'the filter changed nothing, says verify'
@@ -166,6 +168,31 @@ for verb in compare remesh; do refuses 2 '--least goes with --filter' dem.tif -o
 "$scree" verify two --against dem.tif --variant 1 >out 2>err
 [ $? -eq 2 ] && grep -q 'goes with --filter' err || fail 'verify --variant without --filter'
 verb=filter made=to.tif
+
+# Depths become negative heights, whether GeoTIFF has a code for their CRS or no words at all; and stay so by way of a
+# file and without one.
+heights() { # WANTED ARGUMENT...
+    wanted=$1
+    shift
+    rm -rf one
+    "$scree" build "$@" -o one --profile local >out 2>err || fail "build $*: does not"
+    grep -q -- "^$wanted m;" err || fail "build $*: heights are not $wanted"
+}
+cp grid.asc depth.asc
+for axis in 5715 'LENGTHUNIT["foot",0.3048]' 'LENGTHUNIT["metre",1]'; do
+    geographic='GEOGCRS["x",DATUM["World Geodetic System 1984",ELLIPSOID["x",6378137,298.257223563]],CS[ellipsoidal,2],
+        AXIS["latitude",north],AXIS["longitude",east],UNIT["degree",0.0174532925199433],ID["EPSG",4326]]'
+    depth="COMPOUNDCRS[\"x\",$geographic,VERTCRS[\"x\",VDATUM[\"of a lake\"],CS[vertical,1],AXIS[\"x\",down],$axis]]"
+    wanted='-8 to -1'
+    case $axis in
+    5715) depth=EPSG:4326+5715 ;;
+    *foot*) wanted='-2.4384 to -0.3048' ;;
+    esac
+    heights "$wanted" depth.asc --s_srs "$depth"
+    heights "$wanted" depth.asc --s_srs "$depth" --filter $all
+    does depth.asc -o depth.tif --s_srs "$depth" $all
+    heights "$wanted" depth.tif
+done
 
 # Whose data they are goes with them.
 names_surveyors() { grep -ao 'Surveyors of Nowhere' "$1" >out || fail "$1: the attribution is lost"; }

@@ -149,6 +149,53 @@ static void test_las_wkt(void) {
     CU_ASSERT_PTR_NOT_NULL(strstr(r.error.text, "/vsimem/wkt.las: names no coordinate system"));
 }
 
+/* Depths become negative heights, in the CRS's unit: by code, by words, and when the command line says so. */
+static void test_depths(void) {
+    static const struct {
+        const char *vertical;
+        double metres;
+    } cases[] = {{"ID[\"EPSG\",5715]", -1},
+                 {"ID[\"EPSG\",6358]", -1200.0 / 3937},
+                 {"AXIS[\"depth\",down],LENGTHUNIT[\"metre\",1]", -1},
+                 {"AXIS[\"depth\",down],LENGTHUNIT[\"foot\",0.3048]", -0.3048},
+                 {"AXIS[\"height\",up],LENGTHUNIT[\"foot\",0.3048]", 0.3048}};
+    const char *path = "/vsimem/depths.las";
+    struct cloud_options grid = {.named = "--grid", .grid = 2};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct las_fixture fixture = field;
+        char *wkt = NULL, both[4096];
+        int code = 0;
+        const bool is_coded = sscanf(cases[i].vertical, "ID[\"EPSG\",%d]", &code) == 1;
+        OGRSpatialReferenceH crs = OSRNewSpatialReference(NULL);
+        snprintf(both, sizeof both, is_coded ? "EPSG:32611+%d" : "EPSG:32611", code);
+        CU_ASSERT_EQUAL_FATAL(OSRSetFromUserInput(crs, both), OGRERR_NONE);
+        CU_ASSERT_EQUAL_FATAL(OSRExportToWktEx(crs, &wkt, (const char *const[]){"FORMAT=WKT2_2019", NULL}),
+                              OGRERR_NONE);
+        OSRDestroySpatialReference(crs);
+        if (is_coded)
+            snprintf(both, sizeof both, "%s", wkt);
+        else
+            snprintf(both, sizeof both,
+                     "COMPOUNDCRS[\"both\",%s,VERTCRS[\"of a lake\",VDATUM[\"the lake\"],"
+                     "CS[vertical,1],%s]]",
+                     wkt, cases[i].vertical);
+        CPLFree(wkt);
+        put_las(path, &fixture);
+        struct raster_options told = {.inputs = &path, .input_count = 1, .profile = PROFILE_LOCAL, .cloud = grid};
+        struct opened r;
+        told.source_srs = both;
+        CU_ASSERT_TRUE_FATAL(open_raster(&told, -1, &r));
+        CU_ASSERT_DOUBLE_EQUAL(post_m(&r, 20, 7), 20 * cases[i].metres, 1e-4);
+        close_raster(&r);
+        fixture.version_minor = 4;
+        fixture.point_format = 6;
+        fixture.epsg = 0;
+        fixture.wkt = both;
+        put_las(path, &fixture);
+        check_field(path, &grid, cases[i].metres, 0);
+    }
+}
+
 /* Files cut off anywhere, with a record of a length that lies, compressed: one line each that names the file. */
 static void test_bad_files(void) {
     const char *path = "/vsimem/bad.las";
@@ -294,6 +341,7 @@ int suite_cloud_files(void) {
     if (suite == NULL) return 1;
     CU_ADD_TEST(suite, test_las_files);
     CU_ADD_TEST(suite, test_las_wkt);
+    CU_ADD_TEST(suite, test_depths);
     CU_ADD_TEST(suite, test_bad_files);
     CU_ADD_TEST(suite, test_other_files);
     CU_ADD_TEST(suite, test_bad_layers);
