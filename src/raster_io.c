@@ -1,5 +1,6 @@
 /* Elevation from GDAL: what the rest of the program calls to open, describe and place rasters (src/raster_io.h). */
 #include "src/cloud_read_io.h"
+#include "src/mesh_file_read.h"
 #include "src/raster_parts_io.h"
 
 #include <cpl_conv.h>
@@ -310,20 +311,21 @@ static enum scree_status summarize_local(struct raster *raster, PJ_CONTEXT *proj
     return summary->crs_wkt != NULL ? SCREE_OK : scree_fail(error, SCREE_E_MEMORY, "no memory for a CRS");
 }
 
-/* Which inputs are clouds; the options for them need some. */
+/* Which inputs are clouds or meshes; the options for them need some. */
 static enum scree_status find_clouds(const struct raster_options *options, bool *is_cloud, struct scree_error *error) {
     bool has_clouds = false;
     for (int i = 0; i < options->input_count; i++) {
-        is_cloud[i] = cloud_is_cloud(options->inputs[i], options->cloud.named != NULL);
+        is_cloud[i] =
+            mesh_file_is_mesh(options->inputs[i]) || cloud_is_cloud(options->inputs[i], options->cloud.named != NULL);
         has_clouds = has_clouds || is_cloud[i];
     }
     if (options->cloud.named != NULL && !has_clouds)
-        return scree_fail(error, SCREE_E_ARGUMENT, "%s is for point clouds, and %s is none that can be read",
+        return scree_fail(error, SCREE_E_ARGUMENT, "%s is for point clouds and meshes, and %s is none that can be read",
                           options->cloud.named, options->inputs[0]);
     return SCREE_OK;
 }
 
-/* One input is one raster, but all clouds are one together. */
+/* One input is one raster, but all clouds or meshes are one together. */
 static enum scree_status open_input(struct raster *raster, const struct raster_options *options, int i,
                                     const bool *is_cloud, struct scree_error *error) {
     enum scree_status status = SCREE_OK;

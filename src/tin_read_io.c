@@ -2,6 +2,7 @@
 
 #include "src/cloud_read_io.h"
 #include "src/mesh_file_read.h"
+#include "src/mesh_join_io.h"
 #include "src/raster_parts_io.h"
 
 #include <math.h>
@@ -78,44 +79,17 @@ static enum scree_status tell(const struct raster_options *options, const char *
                       cloud_memory_bytes(&options->cloud) >> 20);
 }
 
-/* Puts the points and triangles of `more` behind those of `tin`. */
-static enum scree_status append(struct tin *tin, const struct tin *more, struct scree_error *error) {
-    uint64_t points = (uint64_t)tin->point_count + more->point_count;
-    uint64_t triangles = (uint64_t)tin->triangle_count + more->triangle_count;
-    if (points > CLOUD_MOST_POINTS || triangles > CLOUD_MOST_POINTS)
-        return scree_fail(error, SCREE_E_LIMIT, "more than %d points or triangles", CLOUD_MOST_POINTS);
-    struct cloud_point *grown =
-        scree_reallocate(tin->memory, tin->points, (size_t)points, sizeof *grown, "the points of meshes", error);
-    if (grown == NULL) return error->status;
-    tin->points = grown;
-    uint32_t *corners = scree_reallocate(tin->memory, tin->corners, 3 * (size_t)triangles, sizeof *corners,
-                                         "the triangles of meshes", error);
-    if (corners == NULL) return error->status;
-    tin->corners = corners;
-    memcpy(grown + tin->point_count, more->points, more->point_count * sizeof *grown);
-    for (size_t i = 0; i < 3 * (size_t)more->triangle_count; i++)
-        corners[3 * (size_t)tin->triangle_count + i] = tin->point_count + more->corners[i];
-    tin->point_count = (uint32_t)points;
-    tin->triangle_count = (uint32_t)triangles;
-    return SCREE_OK;
-}
-
 static enum scree_status read_meshes(const struct raster_options *options, struct tin *tin, struct tin_mended *mended,
                                      struct cloud_meaning *meaning, struct scree_error *error) {
     struct scree_error why = {0};
     enum scree_status status = cloud_meaning_take(options->source_srs, NULL, "", meaning, error);
     if (status != SCREE_OK) return status;
-    for (int i = 0; i < options->input_count; i++) {
-        struct tin one = {.memory = tin->memory};
-        if ((status = mesh_file_read(options->inputs[i], &one, error)) != SCREE_OK) return status;
-        if (i == 0) {
-            *tin = one;
-            continue;
-        }
-        status = append(tin, &one, &why);
-        tin_release(&one);
-        if (status != SCREE_OK) return tell(options, options->inputs[i], status, why.text, error);
-    }
+    bool *is_mesh = calloc((size_t)options->input_count, sizeof *is_mesh);
+    if (is_mesh == NULL) return scree_fail(error, SCREE_E_MEMORY, "no memory for %d inputs", options->input_count);
+    for (int i = 0; i < options->input_count; i++) is_mesh[i] = true;
+    status = mesh_join(options, is_mesh, tin, error);
+    free(is_mesh);
+    if (status != SCREE_OK) return status;
     status = tin_mend(tin, mended, &why);
     return status == SCREE_OK ? status : tell(options, options->inputs[0], status, why.text, error);
 }
