@@ -1,5 +1,6 @@
 #include "lod/tin_side.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 
 #define CORNER_SLACK 1 /* step: rounding may put a corner beside the surface that it is on */
@@ -61,14 +62,38 @@ static int by_place(const void *left, const void *right) {
 
 static void sort_out(struct tin_side *side) {
     uint32_t kept = 0;
-    qsort(side->posts, side->count, sizeof *side->posts, by_place);
+    if (side->count > 0) qsort(side->posts, side->count, sizeof *side->posts, by_place);
     for (uint32_t i = 0; i < side->count; i++)
         if (kept == 0 || side->posts[i].x != side->posts[kept - 1].x || side->posts[i].y != side->posts[kept - 1].y)
             side->posts[kept++] = side->posts[i];
     side->count = kept;
 }
 
+/* A point keeps its height, whatever crosses the line so near to it that rounding puts it there. Both are sorted out.
+ */
+static enum scree_status put_points(struct scree_memory *memory, const struct tin_side *points, struct tin_side *side,
+                                    struct scree_error *error) {
+    enum scree_status status = SCREE_OK;
+    uint32_t at = 0, crossings = side->count;
+    for (uint32_t i = 0; i < points->count && status == SCREE_OK; i++) {
+        const struct tin_post *point = &points->posts[i];
+        while (at < crossings && (side->posts[at].x < point->x || side->posts[at].y < point->y)) at++;
+        bool is_there = at < crossings && side->posts[at].x == point->x && side->posts[at].y == point->y;
+        if (is_there)
+            side->posts[at] = *point;
+        else
+            status = add(memory, side, *point, error);
+    }
+    if (status == SCREE_OK) sort_out(side);
+    return status;
+}
+
 /* ---- where the surface meets the line ---- */
+
+/* What a side is made of. */
+struct findings {
+    struct tin_side *crossings, *points;
+};
 
 struct span {
     int32_t from, to;
@@ -92,7 +117,7 @@ static void stretch(struct span *span, int32_t position) {
 
 /* The part of the line in a triangle, and the posts that its edges leave there but for the line's ends. */
 static enum scree_status meet(const struct tin_patch *patch, const struct line *line, uint32_t triangle,
-                              struct span *span, struct tin_side *side, struct scree_error *error) {
+                              struct span *span, struct findings found, struct scree_error *error) {
     enum scree_status status = SCREE_OK;
     *span = (struct span){INT32_MAX, INT32_MIN};
     for (uint32_t edge = 3 * triangle; edge < 3 * triangle + 3 && status == SCREE_OK; edge++) {
@@ -106,20 +131,21 @@ static enum scree_status meet(const struct tin_patch *patch, const struct line *
         int32_t position = along(line, &post);
         stretch(span, position);
         bool is_first = a < b || patch->twins[edge] == TIN_PATCH_NONE || from == line->at; /* of two half-edges one */
-        if (is_first && position > 0 && position < line->length) status = add(patch->memory, side, post, error);
+        if (is_first && position > 0 && position < line->length)
+            status = add(patch->memory, from == line->at ? found.points : found.crossings, post, error);
     }
     return status;
 }
 
 static enum scree_status meet_all(const struct tin_patch *patch, const struct line *line, struct spans *spans,
-                                  struct tin_side *side, struct scree_error *error) {
+                                  struct findings found, struct scree_error *error) {
     enum scree_status status = SCREE_OK;
     spans->items = scree_allocate(patch->memory, (size_t)patch->triangle_count + 2, sizeof *spans->items,
                                   "what lies along a tile's side", error);
     if (spans->items == NULL) return error->status;
     for (uint32_t t = 0; t < patch->triangle_count && status == SCREE_OK; t++) {
         struct span *span = &spans->items[spans->count];
-        status = meet(patch, line, t, span, side, error);
+        status = meet(patch, line, t, span, found, error);
         if (span->from <= line->length && span->to >= 0) spans->count++;
     }
     return status;
@@ -177,6 +203,7 @@ enum scree_status tin_side_make(const struct tin_patch *patch, const struct tin_
                                 struct tin_side *side, struct scree_error *error) {
     struct line line = line_of(tile, which);
     struct spans spans = {0};
+    struct tin_side points = {0};
     struct tin_post corners[2] = {post_at(&line, 0, tile->outside_m), post_at(&line, line.length, tile->outside_m)};
     bool ends[2];
     enum scree_status status = SCREE_OK;
@@ -185,13 +212,16 @@ enum scree_status tin_side_make(const struct tin_patch *patch, const struct tin_
         ends[i] = tin_patch_covers(patch, CORNER_SLACK, &corners[i]);
         status = add(patch->memory, side, corners[i], error);
     }
-    if (status == SCREE_OK) status = meet_all(patch, &line, &spans, side, error);
+    if (status == SCREE_OK) status = meet_all(patch, &line, &spans, (struct findings){side, &points}, error);
     if (status == SCREE_OK) status = fill_gaps(patch, &line, tile, ends, &spans, side, error);
-    if (status == SCREE_OK) sort_out(side);
+    sort_out(side);
+    sort_out(&points);
+    if (status == SCREE_OK) status = put_points(patch->memory, &points, side, error);
     if (status == SCREE_OK && side->count > BORDER_MAX_VERTICES)
         status = scree_fail(error, SCREE_E_LIMIT, "%u edges cross a side of a tile, %d can; name a smaller --block",
                             (unsigned)side->count, BORDER_MAX_VERTICES);
     scree_release(patch->memory, spans.items);
+    tin_side_release(patch->memory, &points);
     if (status != SCREE_OK) tin_side_release(patch->memory, side);
     return status;
 }

@@ -118,7 +118,7 @@ int ladder_octaves_of_tin(const struct lattice *lattice, const struct ladder_opt
     if (options->quantum_m <= 0 || ladder_make(lattice, &coarse, &ladder, NULL) != SCREE_OK) return UNTOLD_OCTAVES;
     double finest_m = power_of_two_below(options->quantum_m / 2);
     double octaves = floor(log2(ladder.tolerance_m[ladder.finest_zoom] / finest_m));
-    return (int)fmin(fmax(octaves, DEFAULT_FINEST_OCTAVES), MAX_FINEST_OCTAVES);
+    return (int)fmin(fmax(octaves, 0), MAX_FINEST_OCTAVES);
 }
 
 enum scree_status ladder_make(const struct lattice *lattice, const struct ladder_options *options,
