@@ -123,39 +123,56 @@ static struct tile_view view_of(const struct lattice *lattice, struct tile_id id
 
 /* What all points of a triangle share. Positions are steps from the tile's corner. */
 struct seen_triangle {
-    const struct residual_corner *corners;
+    struct residual_corner corners[3];
+    bool is_rounded; /* a vertex is where its codes say, and not where it was when the mesh was made */
+    double slack_m;  /* what that may do to a height */
     double centre_x, centre_y, drop_x, drop_y, lifted_m[3];
 };
+
+static double less(double difference_m, double slack_m) {
+    return copysign(fmax(fabs(difference_m) - slack_m, 0), difference_m);
+}
 
 static double cross(double ax, double ay, double bx, double by) {
     return ax * by - ay * bx;
 }
 
-/* Shares of the triangle's area opposite of its corners weigh their heights. */
+/* Shares of the triangle's area opposite of its corners weigh their heights. A triangle that is not rounded goes before
+ * those around that may have slid over its points. */
 static void look_at_point(const struct seen_triangle *triangle, double x, double y, uint32_t number,
                           struct residual_points *points) {
     const struct residual_corner *a = &triangle->corners[0], *b = &triangle->corners[1], *c = &triangle->corners[2];
     double ax = a->x - x, ay = a->y - y, bx = b->x - x, by = b->y - y, cx = c->x - x, cy = c->y - y;
     double wa = cross(bx, by, cx, cy), wb = cross(cx, cy, ax, ay), wc = cross(ax, ay, bx, by), area = wa + wb + wc;
     double inside = fmin(wa, fmin(wb, wc)) / area;
+    if (inside >= OUTSIDE && !triangle->is_rounded) inside += 1;
     if (!(inside > points->inside[number])) return;
     double east = x - triangle->centre_x, north = y - triangle->centre_y, post_m = points->points[number].height_m;
     double sag_m = triangle->drop_x * east * east + triangle->drop_y * north * north;
     const double *lifted_m = triangle->lifted_m;
     points->inside[number] = inside;
-    points->height_m[number] = post_m - (wa * a->height_m + wb * b->height_m + wc * c->height_m) / area;
-    points->drawn_m[number] = post_m - sag_m - (wa * lifted_m[0] + wb * lifted_m[1] + wc * lifted_m[2]) / area;
+    double height_m = (wa * a->height_m + wb * b->height_m + wc * c->height_m) / area;
+    double drawn_m = (wa * lifted_m[0] + wb * lifted_m[1] + wc * lifted_m[2]) / area;
+    points->height_m[number] = less(post_m - height_m, triangle->slack_m);
+    points->drawn_m[number] = less(post_m - sag_m - drawn_m, triangle->slack_m);
 }
 
-static void look_at_triangle(const struct tile_view *view, const struct residual_corner corners[3]) {
+/* `rounding_steps`: how far its vertices may be off their places, in x and in y. */
+static void look_at_triangle(const struct tile_view *view, const struct residual_corner corners[3],
+                             double rounding_steps) {
     struct residual_points *points = view->points;
     const struct residual_corner *a = &corners[0], *b = &corners[1], *c = &corners[2];
-    if (!(cross(b->x - a->x, b->y - a->y, c->x - a->x, c->y - a->y) > 0)) return; /* lies over no point */
+    double bx = b->x - a->x, by = b->y - a->y, bz = b->height_m - a->height_m;
+    double cx = c->x - a->x, cy = c->y - a->y, cz = c->height_m - a->height_m, area = cross(bx, by, cx, cy);
+    if (!(area > 0)) return; /* lies over no point */
     double tile_x = (double)(view->window.x - points->x), tile_y = (double)(view->window.y - points->y);
     struct cells cells =
         cells_touching(points, tile_x + fmin(a->x, fmin(b->x, c->x)), tile_y + fmin(a->y, fmin(b->y, c->y)),
                        tile_x + fmax(a->x, fmax(b->x, c->x)), tile_y + fmax(a->y, fmax(b->y, c->y)));
-    struct seen_triangle triangle = {.corners = corners,
+    struct seen_triangle triangle = {.corners = {*a, *b, *c},
+                                     .is_rounded = rounding_steps > 0,
+                                     .slack_m =
+                                         rounding_steps * (fabs(bz * cy - cz * by) + fabs(cz * bx - bz * cx)) / area,
                                      .centre_x = (a->x + b->x + c->x) / 3,
                                      .centre_y = (a->y + b->y + c->y) / 3,
                                      .drop_y = lattice_meridian_drop_m(view->lattice)};
@@ -200,30 +217,30 @@ static void book(const struct tile_view *view, bool with_east, bool with_north, 
 }
 
 /* Where a tile has more steps than codes, a vertex stands at the point that its codes name; of several at the one whose
- * height is nearest. */
-static void snap(const struct tile_view *view, int64_t span, uint32_t u, uint32_t v, struct residual_corner *corner) {
+ * height is nearest. False: they name none. */
+static bool snap(const struct tile_view *view, int64_t span, uint32_t u, uint32_t v, struct residual_corner *corner) {
     const struct residual_points *points = view->points;
     double tile_x = (double)(view->window.x - points->x), tile_y = (double)(view->window.y - points->y);
     double reach = (double)span / DECODED_TOP, nearest_m = INFINITY;
-    struct residual_corner found = *corner;
-    struct cells cells = cells_touching(points, tile_x + corner->x - reach, tile_y + corner->y - reach,
-                                        tile_x + corner->x + reach, tile_y + corner->y + reach);
+    const struct residual_corner coded = *corner;
+    struct cells cells = cells_touching(points, tile_x + coded.x - reach, tile_y + coded.y - reach,
+                                        tile_x + coded.x + reach, tile_y + coded.y + reach);
     for (int32_t row = cells.y_first; row <= cells.y_last; row++)
         for (int32_t column = cells.x_first; column <= cells.x_last; column++) {
             size_t cell = (size_t)row * (size_t)points->columns + (size_t)column;
             for (uint32_t m = points->first[cell]; m < points->first[cell + 1]; m++) {
                 const struct tin_post *post = &points->points[points->members[m]];
                 int64_t x = post->x + points->x - view->window.x, y = post->y + points->y - view->window.y;
-                double distance_m = fabs(post->height_m - corner->height_m);
+                double distance_m = fabs(post->height_m - coded.height_m);
                 bool is_named = x >= 0 && x <= span && y >= 0 && y <= span && position_code(x, span) == (int32_t)u &&
                                 position_code(y, span) == (int32_t)v;
                 if (!is_named || !(distance_m < nearest_m)) continue;
                 nearest_m = distance_m;
-                found.x = (double)x;
-                found.y = (double)y;
+                corner->x = (double)x;
+                corner->y = (double)y;
             }
         }
-    *corner = found;
+    return nearest_m < INFINITY;
 }
 
 enum scree_status residual_points_add(const struct lattice *lattice, struct tile_id id, const struct decoded_tile *tile,
@@ -231,20 +248,27 @@ enum scree_status residual_points_add(const struct lattice *lattice, struct tile
                                       struct residuals *residuals, struct scree_error *error) {
     struct tile_view view = view_of(lattice, id, points);
     int64_t span = lattice_tile_span(lattice, id.zoom);
+    double half_code = span > DECODED_TOP ? (double)span / DECODED_TOP / 2 : 0;
     struct residual_corner *places =
         scree_allocate(points->memory, tile->vertex_count, sizeof *places, "the places of a tile's vertices", error);
-    if (places == NULL) return error->status;
+    bool *is_rounded = scree_allocate(points->memory, tile->vertex_count, sizeof *is_rounded,
+                                      "the places of a tile's vertices", error);
+    enum scree_status status = places == NULL || is_rounded == NULL ? error->status : SCREE_OK;
+    if (status != SCREE_OK) goto cleanup;
     residual_tile_places(lattice, id, tile, places);
-    for (uint32_t i = 0; i < tile->vertex_count && span > DECODED_TOP; i++)
-        snap(&view, span, tile->u[i], tile->v[i], &places[i]);
+    for (uint32_t i = 0; i < tile->vertex_count && half_code > 0; i++)
+        is_rounded[i] = !snap(&view, span, tile->u[i], tile->v[i], &places[i]);
     for (uint32_t t = 0; t < tile->triangle_count; t++) {
         const uint32_t *corner = tile->corners + 3 * (size_t)t;
         const struct residual_corner corners[3] = {places[corner[0]], places[corner[1]], places[corner[2]]};
-        look_at_triangle(&view, corners);
+        bool any = is_rounded[corner[0]] || is_rounded[corner[1]] || is_rounded[corner[2]];
+        look_at_triangle(&view, corners, any ? half_code : 0);
     }
     book(&view, with_east, with_north, residuals);
+cleanup:
     scree_release(points->memory, places);
-    return SCREE_OK;
+    scree_release(points->memory, is_rounded);
+    return status;
 }
 
 void residual_points_add_mesh(const struct lattice *lattice, struct tile_id id, const struct post_mesh *mesh,
@@ -254,7 +278,7 @@ void residual_points_add_mesh(const struct lattice *lattice, struct tile_id id, 
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         struct residual_corner corners[3];
         residual_mesh_corners(mesh, t, corners);
-        look_at_triangle(&view, corners);
+        look_at_triangle(&view, corners, 0);
     }
     book(&view, with_east, with_north, residuals);
 }

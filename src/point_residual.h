@@ -1,5 +1,9 @@
 /* Heights of points against decoded tiles as clients draw them, as src/mesh_residual.h has them of posts: every point
- * of a TIN in the triangle that it lies in. Pure. */
+ * of a TIN in the triangle that it lies in. Pure.
+ *
+ * A static tile may have more steps a side than codes. Then vertices stand at the points that their codes name, as they
+ * do at posts; triangles with vertices that are no points, but at borders or the foot of a wall, count less what
+ * half a code does to their heights: that is the format's doing, and on walls it is metres. */
 #ifndef SCREE_SRC_POINT_RESIDUAL_H
 #define SCREE_SRC_POINT_RESIDUAL_H
 

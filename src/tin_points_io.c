@@ -3,6 +3,7 @@
 #include "src/tin_georef_io.h"
 #include "src/tin_place.h"
 #include "src/tin_read_io.h"
+#include "src/tin_twins.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -24,6 +25,25 @@ static enum scree_status check_bounds(const char *name, const struct lattice *la
                       name, bounds[0], bounds[1], bounds[2], bounds[3], built[0], built[1], built[2], built[3]);
 }
 
+/* Triangles that rounding has made flat are not there, and points that have no others are not either. */
+static enum scree_status drop_flattened(const struct tin *tin, struct tin_points *points, struct scree_error *error) {
+    bool *is_there = scree_allocate(&points->memory, points->count, sizeof *is_there, "the points of a TIN", error);
+    if (is_there == NULL) return error->status;
+    for (size_t t = 0; t < tin->triangle_count; t++) {
+        const uint32_t *corner = tin->corners + 3 * t;
+        const struct tin_post *a = &points->points[corner[0]], *b = &points->points[corner[1]];
+        const struct tin_post *c = &points->points[corner[2]];
+        int64_t area2 = (int64_t)(b->x - a->x) * (c->y - a->y) - (int64_t)(c->x - a->x) * (b->y - a->y);
+        for (int k = 0; k < 3 && area2 > 0; k++) is_there[corner[k]] = true;
+    }
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < points->count; i++)
+        if (is_there[i]) points->points[kept++] = points->points[i];
+    points->count = kept;
+    scree_release(&points->memory, is_there);
+    return SCREE_OK;
+}
+
 static enum scree_status put_on_lattice(const char *name, const struct tin *tin, const struct lattice *lattice,
                                         const double bounds[4], struct tin_points *points, struct scree_error *error) {
     struct tin_place place = {.lattice = *lattice};
@@ -38,7 +58,8 @@ static enum scree_status put_on_lattice(const char *name, const struct tin *tin,
                                     "the points of a TIN on its lattice", error);
     if (points->points == NULL) return error->status;
     tin_place_points(tin, &place, points->points);
-    return SCREE_OK;
+    enum scree_status status = tin_twins_level(&points->memory, points->points, points->count, error);
+    return status == SCREE_OK ? drop_flattened(tin, points, error) : status;
 }
 
 enum scree_status tin_points_open(const struct raster_options *options, const struct lattice *lattice,

@@ -7,7 +7,7 @@
 
 struct tin_points {
     struct scree_memory memory; /* limited by --memory */
-    struct tin_post *points;    /* without slopes */
+    struct tin_post *points;    /* without slopes; those that have triangles once they are rounded */
     uint32_t count;
     int64_t x, y; /* post of the lattice from which they are counted: none lies west or south of it */
 };

@@ -4,6 +4,7 @@
 #include "src/tin_place.h"
 #include "src/tin_read_io.h"
 #include "src/tin_step.h"
+#include "src/tin_twins.h"
 
 #include <math.h>
 
@@ -54,7 +55,9 @@ static enum scree_status put_on_lattice(struct tin *tin, const struct tin_place 
     if (source->placed.points == NULL) return error->status;
     tin_place_points(tin, place, source->placed.points);
     tin_release(tin);
-    return tin_lattice_finish(&source->placed, steps_of_row, source, error);
+    enum scree_status status =
+        tin_twins_level(&source->memory, source->placed.points, source->placed.point_count, error);
+    return status == SCREE_OK ? tin_lattice_finish(&source->placed, steps_of_row, source, error) : status;
 }
 
 static enum scree_status place(const struct raster_options *options, uint32_t block_points, struct tin *tin,
