@@ -5,10 +5,12 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-#define FARTHEST       1e15 /* as of clouds */
-#define SAME_HEIGHT    1e-9 /* of the extent: so close, heights in one place are one */
-#define NEEDLE         1e-9 /* of the longest edge, or of the extent: not higher is no triangle but a line */
-#define SLIVER         1e-3 /* of the longest edge: not higher, rounding may have turned it over */
+#define FARTHEST    1e15 /* as of clouds */
+#define SAME_HEIGHT 1e-9 /* of the extent: so close, heights in one place are one */
+#define NEEDLE      1e-9 /* of the longest edge, or of the extent: not higher is no triangle but a line */
+#define LATTICE     0.02 /* of the mean longest edge: coarser decimals are no rounding, but places chosen so */
+* /
+#define HIGH           0.25             /* of its length: no sliver on a terrain is */
 #define MOST_TRIANGLES (UINT32_MAX / 3) /* half-edges have 32 bits */
 #define MOST_DIGITS    9
 #define DOUBLE_BITS    50 /* of a coordinate are sure, after its way through decimals */
@@ -16,7 +18,7 @@
 #define ROUNDING       4e-16 /* of the products in a plan area: below, its sign is not known (Shewchuk 1997: 3.4e-16) */
 #define STEEP          10    /* times as high as apart in plan */
 
-static const char advice[] = "a terrain has one height at a place (--grid takes the highest)";
+    static const char advice[] = "a terrain has one height at a place (--grid takes the highest)";
 
 /* What is measured of all points. */
 struct scale {
@@ -182,13 +184,19 @@ static struct shape shape_of(const struct tin *tin, size_t triangle) {
     return shape;
 }
 
-/* Two corners (almost) in one place, and one far above the other. */
-static bool has_upright_edge(const struct tin *tin, size_t triangle, double tolerance) {
+/* Two corners less than `apart` from each other in plan, and one of them more than `above` higher. */
+static bool has_upright_edge(const struct tin *tin, size_t triangle, double apart, double above) {
     for (int k = 0; k < 3; k++) {
         const struct cloud_point *a = corner_of(tin, triangle, k), *b = corner_of(tin, triangle, (k + 1) % 3);
-        if (distance2(a, b) <= tolerance * tolerance && fabs(a->z - b->z) > STEEP * tolerance) return true;
+        if (distance2(a, b) <= apart * apart && fabs(a->z - b->z) > above) return true;
     }
     return false;
+}
+
+/* What has no area in plan but has in space is a wall when a corner is above another one, or when it is high; else it
+ * was a sliver before its corners were rounded. */
+static bool is_wall(const struct tin *tin, size_t triangle, const struct shape *shape) {
+    return has_upright_edge(tin, triangle, 0, 0) || shape->space_area2 > HIGH * shape->longest * shape->longest;
 }
 
 static enum scree_status fail_vertical(const struct tin *tin, size_t triangle, struct scree_error *error) {
@@ -199,11 +207,16 @@ static enum scree_status fail_vertical(const struct tin *tin, size_t triangle, s
                       fmax(a->z, fmax(b->z, c->z)), advice);
 }
 
-/* Lines go, vertical faces fail; counts who is turned which way: the majority is right about slivers. */
-static enum scree_status drop_lines(struct tin *tin, const struct scale *scale, int64_t *majority,
+/* What is counted of triangles that have an area. */
+struct triangles {
+    uint32_t turned[2];      /* counter-clockwise, and clockwise */
+    double longest_edge_sum; /* in plan */
+};
+
+/* Lines go, vertical faces fail. */
+static enum scree_status drop_lines(struct tin *tin, const struct scale *scale, struct triangles *counted,
                                     struct tin_mended *mended, struct scree_error *error) {
     const double least = fmin(scale->rounding, NEEDLE * scale->extent);
-    *majority = 0;
     for (size_t t = 0; t < tin->triangle_count; t++) {
         const uint32_t *corner = &tin->corners[3 * t];
         if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) {
@@ -211,26 +224,27 @@ static enum scree_status drop_lines(struct tin *tin, const struct scale *scale, 
             continue;
         }
         const struct shape shape = shape_of(tin, t);
-        if (!(shape.space_area2 > fmax(fmax(least, shape.blur), NEEDLE * shape.space_longest) * shape.space_longest))
+        const double thinnest = fmax(fmax(least, shape.blur), NEEDLE * shape.space_longest);
+        const bool has_area = shape.space_area2 > thinnest * shape.space_longest;
+        if (has_area && shape.plan_area2 == 0 && is_wall(tin, t, &shape)) return fail_vertical(tin, t, error);
+        if (!has_area || shape.plan_area2 == 0)
             drop(tin, t, mended);
-        else if (shape.plan_area2 == 0)
-            return fail_vertical(tin, t, error);
         else
-            *majority += shape.plan_area2 > 0 ? 1 : -1;
+            counted->turned[shape.plan_area2 < 0]++;
+        counted->longest_edge_sum += is_gone(tin, t) ? 0 : shape.longest;
     }
     return SCREE_OK;
 }
 
 /* Slivers that rounding of positions has turned over go; all others get their corners counter-clockwise. */
-static enum scree_status turn(struct tin *tin, double tolerance, int64_t majority, struct tin_mended *mended,
+static enum scree_status turn(struct tin *tin, double tolerance, bool is_clockwise_rare, struct tin_mended *mended,
                               struct scree_error *error) {
     for (size_t t = 0; t < tin->triangle_count; t++) {
         if (is_gone(tin, t)) continue;
         const struct shape shape = shape_of(tin, t);
         const bool is_clockwise = shape.plan_area2 < 0;
-        const double sliver = fmin(tolerance, SLIVER * shape.longest);
-        if (is_clockwise == (majority >= 0) && fabs(shape.plan_area2) <= sliver * shape.longest) {
-            if (has_upright_edge(tin, t, tolerance)) return fail_vertical(tin, t, error);
+        if (is_clockwise == is_clockwise_rare && fabs(shape.plan_area2) <= tolerance * shape.longest) {
+            if (has_upright_edge(tin, t, tolerance, STEEP * tolerance)) return fail_vertical(tin, t, error);
             drop(tin, t, mended);
         } else if (is_clockwise) {
             const uint32_t second = tin->corners[3 * t + 1];
@@ -391,15 +405,17 @@ cleanup:
 }
 
 enum scree_status tin_mend(struct tin *tin, struct tin_mended *mended, struct scree_error *error) {
-    int64_t majority = 0;
+    struct triangles counted = {0};
     *mended = (struct tin_mended){0};
     enum scree_status status = check_input(tin, error);
     if (status != SCREE_OK) return status;
     const struct scale scale = measure(tin);
-    const double tolerance = 2 * scale.rounding; /* of two places, each rounded in two directions */
     status = weld(tin, scale.extent, mended, error);
-    if (status == SCREE_OK) status = drop_lines(tin, &scale, &majority, mended, error);
-    if (status == SCREE_OK) status = turn(tin, tolerance, majority, mended, error);
+    if (status == SCREE_OK) status = drop_lines(tin, &scale, &counted, mended, error);
+    /* of two places, each rounded in two directions */
+    const double mean_edge = counted.longest_edge_sum / fmax((double)counted.turned[0] + counted.turned[1], 1);
+    const double tolerance = fmin(2 * scale.rounding, LATTICE * mean_edge);
+    if (status == SCREE_OK) status = turn(tin, tolerance, counted.turned[0] >= counted.turned[1], mended, error);
     if (status == SCREE_OK) status = check_surface(tin, tolerance, mended, error);
     if (status != SCREE_OK) return status;
     uint32_t kept = 0;

@@ -6,7 +6,9 @@
 
 #define LEAF_EDGES 8
 #define MOST_DEPTH 40
-#define NEAR       0.02 /* of a triangle's height: always near its edge */
+#define THIN       10   /* times the tolerance: thinner triangles may have been moved over each other by rounding */
+#define CLOSE      0.02 /* of a small triangle's height */
+#define STEP       10   /* times the tolerance, heights differ: not by rounding */
 #define KEY_STEPS  4294967295.0
 
 struct box {
@@ -144,26 +146,69 @@ static double height_at(const struct tin *tin, uint32_t triangle, const struct c
     return a->z + (x * cy - y * cx) / area * (b->z - a->z) + (bx * y - by * x) / area * (c->z - a->z);
 }
 
-/* Looks along a line that is a little inside of the edge's own triangle, for where it is inside of `other` as well. */
-static enum scree_status look(const struct tin *tin, uint32_t edge, uint32_t other, double tolerance,
-                              struct scree_error *error) {
+/* A place where the edge's own triangle and another one both are, from the edge. */
+struct meeting {
+    struct place place;
+    double heights[2];
+};
+
+/* Looks along the line that is 2 * depth inside of the edge's own triangle, for where `other` is, and by `depth`. */
+static bool do_overlap(const struct tin *tin, uint32_t edge, uint32_t other, double depth, struct meeting *meeting) {
     const struct cloud_point *a = corner_of(tin, edge, 0), *b = corner_of(tin, edge, 1);
-    const struct cloud_point *apex = corner_of(tin, edge, 2);
     const double dx = b->x - a->x, dy = b->y - a->y, length = sqrt(dx * dx + dy * dy);
-    const double height = (dx * (apex->y - a->y) - dy * (apex->x - a->x)) / length;
-    const double depth = fmin(tolerance, NEAR * height), x = -dy / length * 2 * depth, y = dx / length * 2 * depth;
+    const double x = -dy / length * 2 * depth, y = dx / length * 2 * depth;
     const struct place line[2] = {{x, y}, {dx + x, dy + y}};
     double range[2] = {0, 1};
     clip(tin, other, a, line, depth, range);
     if (range[0] < range[1]) clip(tin, edge / 3, a, line, 0, range);
-    if (!(range[0] < range[1])) return SCREE_OK;
+    if (!(range[0] < range[1])) return false;
     const double at = (range[0] + range[1]) / 2;
-    const struct place place = {x + at * dx, y + at * dy};
-    const double first = height_at(tin, edge / 3, a, place), second = height_at(tin, other, a, place);
+    meeting->place = (struct place){x + at * dx, y + at * dy};
+    meeting->heights[0] = height_at(tin, edge / 3, a, meeting->place);
+    meeting->heights[1] = height_at(tin, other, a, meeting->place);
+    return true;
+}
+
+/* From an edge to the third corner of its triangle, in plan. */
+static double apex_distance(const struct tin *tin, uint32_t edge) {
+    const struct cloud_point *a = corner_of(tin, edge, 0), *b = corner_of(tin, edge, 1), *c = corner_of(tin, edge, 2);
+    const double dx = b->x - a->x, dy = b->y - a->y;
+    return (dx * (c->y - a->y) - dy * (c->x - a->x)) / sqrt(dx * dx + dy * dy);
+}
+
+/* The heights that a triangle may have near a place: its height there, or, when it is so thin that nobody knows where
+ * in it the place really is, all of its own. */
+static void heights_near(const struct tin *tin, uint32_t triangle, double height, double thin, double range[2]) {
+    range[0] = range[1] = height;
+    for (uint32_t k = 0; k < 3; k++)
+        if (apex_distance(tin, 3 * triangle + k) < thin)
+            for (uint32_t corner = 0; corner < 3; corner++) {
+                range[0] = fmin(range[0], corner_of(tin, 3 * triangle, corner)->z);
+                range[1] = fmax(range[1], corner_of(tin, 3 * triangle, corner)->z);
+            }
+}
+
+/* Triangles that are hardly larger than the tolerance are looked at more closely, but there one has to be clearly above
+ * the other: such as are next to each other may have been moved over each other by rounding. Smaller ones tell nothing.
+ */
+static enum scree_status look(const struct tin *tin, uint32_t edge, uint32_t other, double tolerance,
+                              struct scree_error *error) {
+    const struct cloud_point *a = corner_of(tin, edge, 0);
+    const double height = apex_distance(tin, edge), thin = THIN * tolerance;
+    struct meeting meeting;
+    bool is_overlap = do_overlap(tin, edge, other, tolerance, &meeting);
+    if (!is_overlap && height > tolerance && height < thin && do_overlap(tin, edge, other, CLOSE * height, &meeting)) {
+        double own[2], others[2];
+        heights_near(tin, edge / 3, meeting.heights[0], thin, own);
+        heights_near(tin, other, meeting.heights[1], thin, others);
+        is_overlap = fmax(own[0] - others[1], others[0] - own[1]) > STEP * tolerance;
+    }
+    if (!is_overlap) return SCREE_OK;
     return scree_fail(error, SCREE_E_CORRUPT,
                       "triangles lie one above the other at %.10g %.10g, at heights %.6g and %.6g; a terrain has one "
                       "height at a place (--grid takes the highest)",
-                      a->x + place.x, a->y + place.y, fmin(first, second), fmax(first, second));
+                      a->x + meeting.place.x, a->y + meeting.place.y, fmin(meeting.heights[0], meeting.heights[1]),
+                      fmax(meeting.heights[0], meeting.heights[1]));
 }
 
 /* A triangle as the tree is searched for it. */

@@ -11,8 +11,7 @@
 
 /* Refuses by SCREE_E_CORRUPT, with the place and the heights.
  *   edges      edge_count half-edges that have no other on their other side: 3 * triangle + k leads from corner k on
- *   tolerance  of positions: what reaches no farther over an edge than this, or than a fiftieth of the triangle there,
- *              only touches it
+ *   tolerance  of positions: what reaches no farther over an edge than this only touches it
  * Takes 28 bytes an edge. Triangles whose corners[0] is TIN_NONE are gone. */
 enum scree_status tin_find_overlap(const struct tin *tin, const uint32_t *edges, uint32_t edge_count, double tolerance,
                                    struct scree_error *error);
