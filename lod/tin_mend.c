@@ -5,12 +5,11 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-#define FARTHEST    1e15 /* as of clouds */
-#define SAME_HEIGHT 1e-9 /* of the extent: so close, heights in one place are one */
-#define NEEDLE      1e-9 /* of the longest edge, or of the extent: not higher is no triangle but a line */
-#define LATTICE     0.02 /* of the mean longest edge: coarser decimals are no rounding, but places chosen so */
-* /
-#define HIGH           0.25             /* of its length: no sliver on a terrain is */
+#define FARTHEST       1e15 /* as of clouds */
+#define SAME_HEIGHT    1e-9 /* of the extent: so close, heights in one place are one */
+#define NEEDLE         1e-9 /* of the longest edge, or of the extent: not higher is no triangle but a line */
+#define LATTICE        0.02 /* of the mean longest edge: coarser decimals are no rounding, but places chosen so */
+#define HIGH           0.25 /* of its length: no sliver on a terrain is */
 #define MOST_TRIANGLES (UINT32_MAX / 3) /* half-edges have 32 bits */
 #define MOST_DIGITS    9
 #define DOUBLE_BITS    50 /* of a coordinate are sure, after its way through decimals */
@@ -18,7 +17,7 @@
 #define ROUNDING       4e-16 /* of the products in a plan area: below, its sign is not known (Shewchuk 1997: 3.4e-16) */
 #define STEEP          10    /* times as high as apart in plan */
 
-    static const char advice[] = "a terrain has one height at a place (--grid takes the highest)";
+static const char advice[] = "a terrain has one height at a place (--grid takes the highest)";
 
 /* What is measured of all points. */
 struct scale {
