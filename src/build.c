@@ -101,6 +101,7 @@ static struct ladder_options ladder_options_of(const struct build_options *optio
     if (build->is_tin) {
         ladder.zooms_above = build->lattice.finest_zoom - build->max_zoom;
         ladder.lossless = true;
+        ladder.coarse_octaves = MAX_COARSE_OCTAVES; /* as far as the base wants it */
         ladder.quantum_m = build->tin.quantum_m;
     }
     if (ladder.finest_octaves == FINEST_OCTAVES_UNSAID)
@@ -173,7 +174,7 @@ static enum scree_status finish_terrain(const struct build_options *options, str
     return status;
 }
 
-#define MOST_RUNGS (RUNGS_A_ZOOM * (MAX_ZOOM + 1 + MAX_FINEST_OCTAVES) + 2)
+#define MOST_RUNGS (RUNGS_A_ZOOM * (MAX_ZOOM + 1 + MAX_FINEST_OCTAVES + MAX_COARSE_OCTAVES) + 2)
 
 /* The rungs of all tiles written, coarse to fine. */
 static uint32_t rungs_of(const struct build *build, int32_t *first, double tolerance_m[MOST_RUNGS]) {
@@ -181,7 +182,7 @@ static uint32_t rungs_of(const struct build *build, int32_t *first, double toler
     int last = has_finest ? build->ladder.finest_rung : RUNGS_A_ZOOM * build->max_zoom;
     uint32_t count = 0;
     *first = RUNGS_A_ZOOM * (build->stream_min_zoom - 1);
-    if (build->has_base && build->base_rung > *first) *first = build->base_rung;
+    if (build->has_base && (build->base_rung > *first || build->stream_min_zoom == 0)) *first = build->base_rung;
     for (int rung = *first; rung <= last; rung++) tolerance_m[count++] = ladder_rung_tolerance_m(&build->ladder, rung);
     return count;
 }

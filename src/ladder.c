@@ -128,7 +128,7 @@ enum scree_status ladder_make(const struct lattice *lattice, const struct ladder
     enum scree_status status = set_tolerances(lattice, options, ladder, error);
     if (status != SCREE_OK) return status;
     ladder->finest_rung = RUNGS_A_ZOOM * (finest + options->finest_octaves) + (options->lossless ? 1 : 0);
-    ladder->coarsest_rung = -RUNGS_A_ZOOM;
+    ladder->coarsest_rung = -RUNGS_A_ZOOM * (1 + options->coarse_octaves);
     ladder->lossless = options->lossless;
     double static_step_m = border_step_m(lattice, options, ladder->tolerance_m[finest], finest);
     ladder->height_unit_m = height_unit_m(ladder, options, static_step_m);

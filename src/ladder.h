@@ -24,6 +24,7 @@
 #define RUNGS_A_ZOOM           4
 #define DEFAULT_FINEST_OCTAVES 2
 #define MAX_FINEST_OCTAVES     8
+#define MAX_COARSE_OCTAVES     8
 #define FINEST_OCTAVES_UNSAID  (-1) /* what is usual for the source: build.h */
 
 struct ladder_options {
@@ -36,6 +37,7 @@ struct ladder_options {
     int zooms_above;                 /* of the lattice's finest one lies the finest zoom of tiles: that of a TIN's */
     int finest_octaves;              /* how far the finest zoom goes on below its tolerance */
     bool lossless;                   /* the finest rung is the full grid, or all of a TIN */
+    int coarse_octaves;              /* how far zoom 0 goes on beyond the octave that every zoom has */
     double quantum_m;                /* what heights are multiples of, and no finer are they counted; 0: nothing */
 };
 

@@ -69,7 +69,7 @@ enum scree_status method_build_parent(const struct tile_plan *plan, struct tile_
 
 enum scree_status method_build_hand_up(const struct tile_plan *plan, struct tile_id id, struct post_tile *tile,
                                        struct post_tile **coarse, struct scree_error *error) {
-    walk(plan, id, RUNGS_A_ZOOM * id.zoom, tile_coarsest_rung(id), tile);
+    walk(plan, id, RUNGS_A_ZOOM * id.zoom, tile_coarsest_rung(plan, id), tile);
     return post_tile_hand_up_new(tile, coarse, error);
 }
 

@@ -80,7 +80,7 @@ static enum scree_status walk_to(const struct tile_plan *plan, struct tile_walk 
 static enum scree_status look_ahead(const struct tile_plan *plan, struct tile_walk *walk, int first,
                                     struct scree_error *error) {
     struct tile_rung rungs[TILE_MOST_RUNGS];
-    int count = 0, last = walk->id.zoom > 0 ? tile_coarsest_rung(walk->id) : 0;
+    int count = 0, last = walk->id.zoom > 0 ? tile_coarsest_rung(plan, walk->id) : 0;
     for (int rung = first; rung >= last; rung--) {
         int zoom = tile_zoom_ahead(walk->id, rung);
         rungs[count] = (struct tile_rung){.tolerance_m = ladder_rung_tolerance_m(plan->ladder, rung)};
@@ -260,7 +260,7 @@ enum scree_status tile_build_hand_up(const struct tile_plan *plan, struct tile_w
     enum scree_status status = SCREE_OK;
     *coarse = NULL;
     if (!is_root || walk->is_recorded || plan->census != CENSUS_NONE)
-        status = walk_to(plan, walk, tile_coarsest_rung(walk->id), error);
+        status = walk_to(plan, walk, tile_coarsest_rung(plan, walk->id), error);
     if (status == SCREE_OK && !is_root) status = fit(plan, walk, walk->id.zoom - 1, &walk->tile.rest->fitted, error);
     return status == SCREE_OK && !is_root ? tile_hand_up_new(&walk->tile, coarse, error) : status;
 }

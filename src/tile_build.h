@@ -13,7 +13,7 @@
 #include "src/tile_place.h"
 #include "src/tile_store_io.h"
 
-#define TILE_MOST_RUNGS (RUNGS_A_ZOOM * (MAX_FINEST_OCTAVES + 1) + 2)
+#define TILE_MOST_RUNGS (RUNGS_A_ZOOM * (MAX_FINEST_OCTAVES + 1 + MAX_COARSE_OCTAVES) + 2)
 
 /* A tile on its way down its rungs. It must not move while it is recorded. */
 struct tile_walk {

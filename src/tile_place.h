@@ -60,9 +60,9 @@ void placed_posts_release(struct scree_memory *memory, struct placed_posts *post
 
 /* ---- rungs ---- */
 
-/* The last one of a tile: that of its parent. */
-static inline int tile_coarsest_rung(struct tile_id id) {
-    return RUNGS_A_ZOOM * (id.zoom - 1);
+/* The last one of a tile: that of its parent, if it has one. */
+static inline int tile_coarsest_rung(const struct tile_plan *plan, struct tile_id id) {
+    return id.zoom > 0 ? RUNGS_A_ZOOM * (id.zoom - 1) : plan->ladder->coarsest_rung;
 }
 
 /* The zoom whose static tile the rung is, or is on the way to. */
