@@ -35,7 +35,7 @@ mkdir "$models"
 
 "$build/tests/island_cloud" -o "$folder/island.xyz"
 "$scree" build "$folder/island.xyz" --s_srs EPSG:32649 --profile local --products stream -q -o "$terrain"
-"$scree" verify "$terrain"
+"$scree" verify "$terrain" --against "$folder/island.xyz" --s_srs EPSG:32649
 
 # ---- the sub-blocks and their scales ----
 
