@@ -36,7 +36,7 @@ enum context_class {
 };
 
 /* "near", "railway", "hill", "forest"; "rest" for the last. */
-const char *context_class_name(enum context_class class);
+const char *context_class_name(enum context_class kind);
 
 enum context_detail {
     CONTEXT_FILTERED,   /* heights of classes 1 and 2 are filtered by the Haar transform */
