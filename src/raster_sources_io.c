@@ -1,5 +1,4 @@
 /* Opens and checks one input, reads its pixels as heights in metres, and scans it once for their range. */
-#include "src/mesh_file_read.h"
 #include "src/raster_parts_io.h"
 
 #include <cpl_conv.h>
@@ -170,11 +169,7 @@ enum scree_status raster_input_open(const struct raster *raster, const char *nam
     }
     dataset = GDALOpenEx(dataset_name, GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, NULL, NULL, NULL);
     if (dataset == NULL) {
-        status = mesh_file_is_mesh(name)
-                     ? scree_fail(
-                           error, SCREE_E_UNSUPPORTED,
-                           "%s: is a mesh, and posts are wanted here; scree build reads meshes, without --filter", name)
-                     : raster_trap_fail(&trap, name, error);
+        status = raster_trap_fail(&trap, name, error);
         goto cleanup;
     }
     status = check_band(raster, dataset, input, error);

@@ -149,6 +149,8 @@ builds '--s_srs EPSG:4326 -a_nodata 900 --fill-distance -1' '--delta 0.5' \
     '--te 10.2 45.1 12 46.6 --nodata-height 3' '--products terrain' feet.asc
 builds '--s_srs EPSG:32611+5715' '--delta 1' '' '--profile local' dem.tif
 "$TOP_BUILDDIR/tests/fractal_las" -o cloud.las --points 5000 --spacing-m 30 || fail 'no cloud'
+printf 'OFF\n4 2 0\n0 0 1\n90 0 2\n0 90 9\n90 90 3\n3 0 1 3\n3 0 3 2\n' >mesh.off
+builds '--grid 2' '--delta 0.1' '' '--profile local' mesh.off
 builds '--class 2 --grid 40' '--delta 3' '' '--profile local' cloud.las
 "$scree" verify one --against cloud.las --class 2 --grid 40 >out 2>err && fail 'the filter changed nothing, says verify'
 rm -rf one
@@ -161,8 +163,6 @@ refuses 2 '--rules goes with --filter' dem.tif -o one --landuse use.json --rules
 refuses 2 '--rules goes with --landuse' dem.tif -o one --filter --rules rules.txt
 refuses 2 '1 to 9' dem.tif -o one --filter --spline-steps 10
 refuses 1 'dem.tif: to filter .* allow that with' dem.tif -o one --filter --filter-memory 4
-echo ply >some.ply
-refuses 1 'some.ply: is a mesh, and posts are wanted' some.ply -o one --filter
 refuses 1 '^scree build: nothing.json' dem.tif -o one --filter --landuse nothing.json
 refuses 1 '^scree build: grid.asc: names no coordinate system' grid.asc -o one --filter
 refuses 1 '^scree build: dem.tif: lies outside of --te' dem.tif -o one --filter --te 5 5 6 6
@@ -261,7 +261,6 @@ refuses 2 'extent' dem.tif -o to.tif --te 1 1 1 1
 refuses 1 'nothing.tif' nothing.tif -o to.tif
 echo 'not a raster' >text.tif
 refuses 1 'text.tif' text.tif -o to.tif
-refuses 1 'is a mesh' some.ply -o to.tif
 head -c 5000 dem.tif >cut.tif
 refuses 1 'cut.tif' cut.tif -o to.tif
 sed '7,$s/[0-9][0-9]*/9999/g;s/-*9999/-9999/g' grid.asc >void.asc
