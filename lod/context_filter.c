@@ -21,13 +21,13 @@ struct context_options context_defaults(void) {
                                                      [CONTEXT_FOREST] = {0, 0.1, 0.2, 0.2, 0.3, 20, 20, 20, 20}}};
 }
 
-const char *context_class_name(enum context_class class) {
+const char *context_class_name(enum context_class which) {
     static const char *const names[CONTEXT_CLASSES] = {[CONTEXT_NEAR] = "near",
                                                        [CONTEXT_RAILWAY] = "railway",
                                                        [CONTEXT_HILL] = "hill",
                                                        [CONTEXT_FOREST] = "forest",
                                                        [CONTEXT_REST] = "rest"};
-    return names[class];
+    return names[which];
 }
 
 /* ---- neighbourhoods ---- */
