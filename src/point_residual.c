@@ -57,9 +57,9 @@ enum scree_status residual_points_begin(struct scree_memory *memory, const struc
     points->members = scree_allocate(memory, count, sizeof *points->members, what, error);
     points->height_m = scree_allocate(memory, count, sizeof *points->height_m, what, error);
     points->drawn_m = scree_allocate(memory, count, sizeof *points->drawn_m, what, error);
-    points->inside = scree_allocate(memory, count, sizeof *points->inside, what, error);
+    points->rank = scree_allocate(memory, count, sizeof *points->rank, what, error);
     if (points->first == NULL || points->members == NULL || points->height_m == NULL || points->drawn_m == NULL ||
-        points->inside == NULL)
+        points->rank == NULL)
         return error->status;
     sort_into_cells(points);
     return SCREE_OK;
@@ -71,7 +71,7 @@ void residual_points_release(struct residual_points *points) {
     scree_release(points->memory, points->members);
     scree_release(points->memory, points->height_m);
     scree_release(points->memory, points->drawn_m);
-    scree_release(points->memory, points->inside);
+    scree_release(points->memory, points->rank);
     *points = (struct residual_points){0};
 }
 
@@ -107,16 +107,19 @@ struct tile_view {
     struct residual_points *points;
     struct lattice_window window;
     struct cells cells;
+    double half_code; /* steps; 0: vertices are where their codes say */
 };
 
-static struct tile_view view_of(const struct lattice *lattice, struct tile_id id, struct residual_points *points) {
-    struct tile_view view = {.lattice = lattice, .points = points, .window = lattice_tile_window(lattice, id)};
+static struct tile_view view_of(const struct lattice *lattice, struct tile_id id, double half_code,
+                                struct residual_points *points) {
+    struct tile_view view = {
+        .lattice = lattice, .points = points, .window = lattice_tile_window(lattice, id), .half_code = half_code};
     view.cells = cells_of(points, &view.window);
     for (int32_t row = view.cells.y_first; row <= view.cells.y_last; row++)
         for (int32_t column = view.cells.x_first; column <= view.cells.x_last; column++) {
             size_t cell = (size_t)row * (size_t)points->columns + (size_t)column;
             for (uint32_t m = points->first[cell]; m < points->first[cell + 1]; m++)
-                points->inside[points->members[m]] = -1;
+                points->rank[points->members[m]] = -1;
         }
     return view;
 }
@@ -124,8 +127,10 @@ static struct tile_view view_of(const struct lattice *lattice, struct tile_id id
 /* What all points of a triangle share. Positions are steps from the tile's corner. */
 struct seen_triangle {
     struct residual_corner corners[3];
-    bool is_rounded; /* a vertex is where its codes say, and not where it was when the mesh was made */
-    double slack_m;  /* what that may do to a height */
+    bool is_rounded;    /* a vertex is where its codes say, and not where it was when the mesh was made */
+    double slack_m;     /* what that may do to a height */
+    double reach_steps; /* how far off a place may be where vertices of the tile are rounded; 0: none are */
+    double lengths[3];  /* of the edges opposite of the corners */
     double centre_x, centre_y, drop_x, drop_y, lifted_m[3];
 };
 
@@ -137,40 +142,54 @@ static double cross(double ax, double ay, double bx, double by) {
     return ax * by - ay * bx;
 }
 
-/* Shares of the triangle's area opposite of its corners weigh their heights. A triangle that is not rounded goes before
- * those around that may have slid over its points. */
+/* How much speaks for measuring a point in a triangle, of which `shares` of the area lie opposite of its corners: to be
+ * inside; where the tile is rounded, to be inside of one that is not itself, and then the smallest of all differences
+ * in triangles that the point may be in. Below 0: it is in another one. */
+static double rank_of(const struct seen_triangle *triangle, const double shares[3], double area, double drawn_m) {
+    double inside = fmin(shares[0], fmin(shares[1], shares[2])) / area;
+    if (triangle->reach_steps == 0) return inside >= OUTSIDE ? fmax(inside, 0) : -1;
+    if (inside >= OUTSIDE && !triangle->is_rounded) return 2 + inside;
+    for (int k = 0; k < 3; k++)
+        if (shares[k] < -triangle->reach_steps * triangle->lengths[k]) return -1;
+    return 1 / (1 + fabs(drawn_m));
+}
+
+/* Shares of the triangle's area opposite of its corners weigh their heights. */
 static void look_at_point(const struct seen_triangle *triangle, double x, double y, uint32_t number,
                           struct residual_points *points) {
     const struct residual_corner *a = &triangle->corners[0], *b = &triangle->corners[1], *c = &triangle->corners[2];
     double ax = a->x - x, ay = a->y - y, bx = b->x - x, by = b->y - y, cx = c->x - x, cy = c->y - y;
-    double wa = cross(bx, by, cx, cy), wb = cross(cx, cy, ax, ay), wc = cross(ax, ay, bx, by), area = wa + wb + wc;
-    double inside = fmin(wa, fmin(wb, wc)) / area;
-    if (inside >= OUTSIDE && !triangle->is_rounded) inside += 1;
-    if (!(inside > points->inside[number])) return;
+    const double shares[3] = {cross(bx, by, cx, cy), cross(cx, cy, ax, ay), cross(ax, ay, bx, by)};
     double east = x - triangle->centre_x, north = y - triangle->centre_y, post_m = points->points[number].height_m;
     double sag_m = triangle->drop_x * east * east + triangle->drop_y * north * north;
     const double *lifted_m = triangle->lifted_m;
-    points->inside[number] = inside;
-    double height_m = (wa * a->height_m + wb * b->height_m + wc * c->height_m) / area;
-    double drawn_m = (wa * lifted_m[0] + wb * lifted_m[1] + wc * lifted_m[2]) / area;
+    double area = shares[0] + shares[1] + shares[2];
+    double height_m = (shares[0] * a->height_m + shares[1] * b->height_m + shares[2] * c->height_m) / area;
+    double drawn_m = (shares[0] * lifted_m[0] + shares[1] * lifted_m[1] + shares[2] * lifted_m[2]) / area;
+    double difference_m = less(post_m - sag_m - drawn_m, triangle->slack_m);
+    double rank = rank_of(triangle, shares, area, difference_m);
+    if (!(rank > points->rank[number])) return;
+    points->rank[number] = rank;
     points->height_m[number] = less(post_m - height_m, triangle->slack_m);
-    points->drawn_m[number] = less(post_m - sag_m - drawn_m, triangle->slack_m);
+    points->drawn_m[number] = difference_m;
 }
 
-/* `rounding_steps`: how far its vertices may be off their places, in x and in y. */
-static void look_at_triangle(const struct tile_view *view, const struct residual_corner corners[3],
-                             double rounding_steps) {
+static void look_at_triangle(const struct tile_view *view, const struct residual_corner corners[3], bool is_rounded) {
     struct residual_points *points = view->points;
     const struct residual_corner *a = &corners[0], *b = &corners[1], *c = &corners[2];
     double bx = b->x - a->x, by = b->y - a->y, bz = b->height_m - a->height_m;
     double cx = c->x - a->x, cy = c->y - a->y, cz = c->height_m - a->height_m, area = cross(bx, by, cx, cy);
     if (!(area > 0)) return; /* lies over no point */
     double tile_x = (double)(view->window.x - points->x), tile_y = (double)(view->window.y - points->y);
-    struct cells cells =
-        cells_touching(points, tile_x + fmin(a->x, fmin(b->x, c->x)), tile_y + fmin(a->y, fmin(b->y, c->y)),
-                       tile_x + fmax(a->x, fmax(b->x, c->x)), tile_y + fmax(a->y, fmax(b->y, c->y)));
+    double reach = 1.5 * view->half_code; /* more than its root, across */
+    struct cells cells = cells_touching(
+        points, tile_x + fmin(a->x, fmin(b->x, c->x)) - reach, tile_y + fmin(a->y, fmin(b->y, c->y)) - reach,
+        tile_x + fmax(a->x, fmax(b->x, c->x)) + reach, tile_y + fmax(a->y, fmax(b->y, c->y)) + reach);
+    double rounding_steps = is_rounded ? view->half_code : 0;
     struct seen_triangle triangle = {.corners = {*a, *b, *c},
-                                     .is_rounded = rounding_steps > 0,
+                                     .is_rounded = is_rounded,
+                                     .reach_steps = reach,
+                                     .lengths = {hypot(cx - bx, cy - by), hypot(cx, cy), hypot(bx, by)},
                                      .slack_m =
                                          rounding_steps * (fabs(bz * cy - cz * by) + fabs(cz * bx - bz * cx)) / area,
                                      .centre_x = (a->x + b->x + c->x) / 3,
@@ -207,13 +226,17 @@ static void book(const struct tile_view *view, bool with_east, bool with_north, 
                 int64_t x = points->x + points->points[number].x, y = points->y + points->points[number].y;
                 int64_t east = window->x + window->columns - (with_east ? 0 : 1);
                 int64_t north = window->y + window->rows - (with_north ? 0 : 1);
-                if (points->inside[number] < OUTSIDE || x < window->x || x > east || y < window->y || y > north)
-                    continue;
+                if (points->rank[number] < 0 || x < window->x || x > east || y < window->y || y > north) continue;
                 residuals->posts++;
                 residual_add(&residuals->height, points->height_m[number], x, y);
                 residual_add(&residuals->drawn, points->drawn_m[number], x, y);
             }
         }
+}
+
+/* Codes are exact at both ends. */
+static bool is_corner(const struct tile_view *view, const struct residual_corner *place) {
+    return (place->x == 0 || place->x == view->window.columns) && (place->y == 0 || place->y == view->window.rows);
 }
 
 /* Where a tile has more steps than codes, a vertex stands at the point that its codes name; of several at the one whose
@@ -246,9 +269,9 @@ static bool snap(const struct tile_view *view, int64_t span, uint32_t u, uint32_
 enum scree_status residual_points_add(const struct lattice *lattice, struct tile_id id, const struct decoded_tile *tile,
                                       bool with_east, bool with_north, struct residual_points *points,
                                       struct residuals *residuals, struct scree_error *error) {
-    struct tile_view view = view_of(lattice, id, points);
     int64_t span = lattice_tile_span(lattice, id.zoom);
     double half_code = span > DECODED_TOP ? (double)span / DECODED_TOP / 2 : 0;
+    struct tile_view view = view_of(lattice, id, half_code, points);
     struct residual_corner *places =
         scree_allocate(points->memory, tile->vertex_count, sizeof *places, "the places of a tile's vertices", error);
     bool *is_rounded = scree_allocate(points->memory, tile->vertex_count, sizeof *is_rounded,
@@ -257,12 +280,12 @@ enum scree_status residual_points_add(const struct lattice *lattice, struct tile
     if (status != SCREE_OK) goto cleanup;
     residual_tile_places(lattice, id, tile, places);
     for (uint32_t i = 0; i < tile->vertex_count && half_code > 0; i++)
-        is_rounded[i] = !snap(&view, span, tile->u[i], tile->v[i], &places[i]);
+        is_rounded[i] = !is_corner(&view, &places[i]) && !snap(&view, span, tile->u[i], tile->v[i], &places[i]);
     for (uint32_t t = 0; t < tile->triangle_count; t++) {
         const uint32_t *corner = tile->corners + 3 * (size_t)t;
         const struct residual_corner corners[3] = {places[corner[0]], places[corner[1]], places[corner[2]]};
         bool any = is_rounded[corner[0]] || is_rounded[corner[1]] || is_rounded[corner[2]];
-        look_at_triangle(&view, corners, any ? half_code : 0);
+        look_at_triangle(&view, corners, any);
     }
     book(&view, with_east, with_north, residuals);
 cleanup:
@@ -274,11 +297,11 @@ cleanup:
 void residual_points_add_mesh(const struct lattice *lattice, struct tile_id id, const struct post_mesh *mesh,
                               bool with_east, bool with_north, struct residual_points *points,
                               struct residuals *residuals) {
-    struct tile_view view = view_of(lattice, id, points);
+    struct tile_view view = view_of(lattice, id, 0, points);
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         struct residual_corner corners[3];
         residual_mesh_corners(mesh, t, corners);
-        look_at_triangle(&view, corners, 0);
+        look_at_triangle(&view, corners, false);
     }
     book(&view, with_east, with_north, residuals);
 }

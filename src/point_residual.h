@@ -22,7 +22,7 @@ struct residual_points {
     uint32_t *members;     /* numbers of points */
     double *height_m;      /* point minus mesh, as in struct residuals */
     double *drawn_m;
-    double *inside; /* how far inside of its triangle: the smallest share of the area; -1: no triangle yet */
+    double *rank; /* what speaks for the triangle that it was measured in; -1: there is none yet */
 };
 
 /* Sorts points, which have to stay; their places are 0 or more. `points` is to be released in any case. */

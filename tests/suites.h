@@ -63,5 +63,6 @@ SUITE(player)
 SUITE(constrained)
 SUITE(features)
 SUITE(points)
+SUITE(point_residual)
 
 #undef SUITE

@@ -37,6 +37,23 @@ build hill.ply --s_srs EPSG:32611 -o globe || fail 'no build on the globe'
 build hill.ply --grid 5 --profile local -o posts || fail 'no posts'
 "$scree" verify posts --against hill.ply --grid 5 >printed || fail "posts: $(grep BROKEN printed)"
 
+# Measured against something else: other points, posts where triangles were and triangles where posts were.
+# another WORD ARGUMENT...: verify fails, and says so.
+another() {
+    word=$1
+    shift
+    "$scree" verify "$@" >printed 2>&1 && fail "verify $*: $(tail -n 1 printed)"
+    grep -q -e "$word" printed || fail "verify $*: $(tail -n 1 printed)"
+}
+sed 's/ \(1[0-9][0-9]\)\.\([0-9]*\)$/ \1.9\2/' hill.ply >higher.ply
+sed 's/^\(50[0-9]*\)\./\10./' hill.ply >wider.ply
+another 'BROKEN .*finest zoom is within' out --against higher.ply
+another 'BROKEN .*no post or point' out --against higher.ply
+another 'use the same inputs' out --against wider.ply
+another 'use the same inputs' out --against hill.ply --grid 5
+another 'use the same inputs' globe --against hill.ply --s_srs EPSG:32611 --grid 5
+another 'use the same inputs' posts --against hill.ply
+
 # The other formats, by way of what is extracted. Numbers of texts are those of floats, to nine digits.
 for format in ply obj stl off; do
     "$scree" extract out -o mesh.$format -q || fail "no mesh.$format"
