@@ -9,6 +9,7 @@
 #include <cpl_vsi.h>
 #include <math.h>
 #include <ogr_srs_api.h>
+#include <proj.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -343,6 +344,43 @@ static void test_geodetic(void) {
     }
 }
 
+/* Heights above EGM96 become ellipsoidal as PROJ says, and are multiples of nothing then. */
+static void test_egm96(void) {
+    struct tin_source source;
+    struct raster_options options = local_options();
+    struct scree_error error = {0};
+    options.profile = PROFILE_GEODETIC;
+    options.source_srs = "EPSG:4326+5773";
+    begin_points();
+    add_grid(11, 11, 7, 46, 0.01);
+    put_points(cloud_path);
+    enum scree_status status = tin_source_open(&options, 0, false, &source, &error);
+    if (status == SCREE_E_IO && strstr(error.text, "grid") != NULL) {
+        printf("skipped: PROJ has no EGM96 grid (Debian: proj-data) ... ");
+        tin_source_release(&source);
+        return;
+    }
+    CU_ASSERT_EQUAL_FATAL(status, SCREE_OK);
+    PJ_CONTEXT *context = proj_context_create();
+    PJ *expected = proj_create_crs_to_crs(context, "EPSG:4326+5773", "EPSG:4979", NULL);
+    CU_ASSERT_PTR_NOT_NULL_FATAL(expected);
+    double largest_m = 0;
+    for (uint32_t p = 0; p < source.placed.point_count; p++) {
+        double column = nearbyint((point_x(&source, p) - 7) / 0.01), row = nearbyint((point_y(&source, p) - 46) / 0.01);
+        PJ_COORD at = proj_coord(46 + 0.01 * row, 7 + 0.01 * column, 100 + 0.1 * column, HUGE_VAL);
+        double height_m = proj_trans(expected, PJ_FWD, at).xyz.z;
+        largest_m = fmax(largest_m, fabs(height_m - (double)source.placed.points[p].height_m));
+        CU_ASSERT_TRUE(height_m > 140);
+    }
+    CU_ASSERT_TRUE(largest_m < 1e-3);
+    CU_ASSERT_EQUAL(source.quantum_m, 0);
+    CU_ASSERT_TRUE(source.summary.height_min_m > 140 && source.summary.height_max_m < 160);
+    CU_ASSERT_PTR_NOT_NULL(strstr(source.summary.datum, "EGM96 height"));
+    proj_destroy(expected);
+    proj_context_destroy(context);
+    tin_source_release(&source);
+}
+
 /* A continent's frame has coarser steps, so that positions keep 30 bits. */
 static void test_continent(void) {
     struct tin_source source;
@@ -568,6 +606,7 @@ int suite_tin_source(void) {
     CU_ADD_TEST(suite, test_blocks);
     CU_ADD_TEST(suite, test_cluster);
     CU_ADD_TEST(suite, test_geodetic);
+    CU_ADD_TEST(suite, test_egm96);
     CU_ADD_TEST(suite, test_continent);
     CU_ADD_TEST(suite, test_order);
     CU_ADD_TEST(suite, test_memory);
