@@ -172,17 +172,17 @@ enum scree_status tile_build_level(const struct tile_plan *plan, struct tile_id 
     int64_t locked_step = geometry.locked_step, half = lattice_tile_span(plan->lattice, id.zoom) / 2;
     bool has_children = id.zoom < plan->ladder->finest_zoom;
     begin(walk, id);
+    /* a base that is finer than such tiles are otherwise, is where its stream begins and ends */
+    if (record && plan->has_base && plan->base_rung > walk->rung) walk->rung = plan->base_rung;
     /* like its neighbours it is, at its finest rung, what four children would be: their corners are there */
     if (has_children && (locked_step == 0 || half < locked_step)) geometry.locked_step = half;
     enum scree_status status = tile_from_level(memory, &geometry, step, plan->nodata_height_m, &walk->tile, error);
     if (status == SCREE_OK) status = take_to(plan, walk, walk->rung, error);
     if (status == SCREE_OK) status = tile_lock(&walk->tile, locked_step, error);
+    if (status == SCREE_OK) status = start_recording(plan, walk, record, tile_max_error_m(&walk->tile), error);
+    if (status == SCREE_OK) status = walk_to(plan, walk, RUNGS_A_ZOOM * id.zoom, error);
     if (status == SCREE_OK) walk->max_error_m = tile_max_error_m(&walk->tile);
     if (status == SCREE_OK) status = fit(plan, walk, id.zoom, &walk->fitted, error);
-    int rung = walk->rung; /* a base that is finer than the tile is, is all that its stream has */
-    if (record && plan->has_base && plan->base_rung > rung) walk->rung = plan->base_rung;
-    if (status == SCREE_OK) status = start_recording(plan, walk, record, walk->max_error_m, error);
-    walk->rung = rung;
     if (status != SCREE_OK) tile_walk_release(walk);
     return status;
 }

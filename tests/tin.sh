@@ -54,6 +54,13 @@ another 'use the same inputs' out --against hill.ply --grid 5
 another 'use the same inputs' globe --against hill.ply --s_srs EPSG:32611 --grid 5
 another 'use the same inputs' posts --against hill.ply
 
+# One triangle, most of whose tiles have nothing of it: with a fine base these have to meet the others all the same.
+printf 'v 500000 4000000 0\nv 510000 4000000 0\nv 500001 4010000 1\nf 1 2 3\n' >one.obj
+for base in 20% 100% 1; do
+    build one.obj --s_srs EPSG:32611 --base $base -o one || fail 'no build of one triangle'
+    "$scree" verify one >printed || fail "one triangle, --base $base: $(grep BROKEN printed)"
+done
+
 # The other formats, by way of what is extracted. Numbers of texts are those of floats, to nine digits.
 for format in ply obj stl off; do
     "$scree" extract out -o mesh.$format -q || fail "no mesh.$format"
