@@ -1,8 +1,10 @@
 /* bench_build: what a whole `scree build` costs, on fractal rasters of growing size: posts a second a core (from CPU
- * time), wall time with one thread and with two, peak memory, and how time grows with the number of posts.
+ * time), wall time with one thread and with two, peak memory, and how time grows with the number of posts; and the same
+ * of a million lidar points that are kept as a TIN, from file to streams.
  *
- * Run it where the programs are (it starts ./scree and tests/fractal_dem) and where there is room on the disk: it works
- * in a folder of its own, which it removes. SCREE_BENCH_SIZES="2048 4096 20000" overrules the sizes. */
+ * Run it where the programs are (it starts ./scree, tests/fractal_dem and tests/fractal_las) and where there is room on
+ * the disk: it works in a folder of its own, which it removes. SCREE_BENCH_SIZES="2048 4096 20000" overrules the sizes.
+ */
 #include <fcntl.h>
 #include <spawn.h>
 #include <stdbool.h>
@@ -19,6 +21,7 @@ extern char **environ;
 #define TARGET_POSTS_PER_CPU_S 600000.0
 #define TARGET_SPEEDUP         1.8
 #define TARGET_PEAK_MB         300.0
+#define TARGET_POINTS_WALL_S   20.0
 
 struct cost {
     double wall_s, cpu_s, peak_mb;
@@ -128,6 +131,28 @@ static bool bench_size(const char *folder, const char *size, bool geodetic, doub
            bench_task(&both, size, &ignored);
 }
 
+/* Three of four points are on the ground. */
+static bool bench_points(const char *folder) {
+    char cloud[256], out[256];
+    struct cost cost;
+    snprintf(cloud, sizeof cloud, "%s/fractal.las", folder);
+    snprintf(out, sizeof out, "%s/out", folder);
+    const char *make[] = {"tests/fractal_las", "-o", cloud, "--points", "1333333", "--spacing-m", "1", NULL};
+    if (!run(make, &cost)) return false;
+    printf(" points                    j    wall s     CPU s  points/CPU s peak MB\n");
+    for (int threads = 1; threads <= 2; threads++) {
+        const char *build[] = {"./scree",   "build", cloud, "--class",    "2",      "-o", out,
+                               "--profile", "local", "-q",  "--products", "stream", "-j", threads == 1 ? "1" : "2",
+                               NULL};
+        if (!run(build, &cost)) return false;
+        printf("1000000 as a TIN, streams  %d %9.2f %9.2f %12.0f %8.0f\n", threads, cost.wall_s, cost.cpu_s,
+               1e6 / cost.cpu_s, cost.peak_mb);
+    }
+    if (cost.wall_s > TARGET_POINTS_WALL_S)
+        printf("missed: a million points in at most %.0f s with two threads\n", TARGET_POINTS_WALL_S);
+    return true;
+}
+
 static bool bench_all(const char *folder) {
     const char *wanted = getenv("SCREE_BENCH_SIZES");
     char sizes[256];
@@ -140,7 +165,7 @@ static bool bench_all(const char *folder) {
         if (first == 0) first = now;
         printf("          CPU time a post: %.2f x that of the first size\n", now / first);
     }
-    return bench_size(folder, "2048", true, &now);
+    return bench_size(folder, "2048", true, &now) && bench_points(folder);
 }
 
 int main(void) {
