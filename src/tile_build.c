@@ -177,7 +177,8 @@ enum scree_status tile_build_level(const struct tile_plan *plan, struct tile_id 
     /* like its neighbours it is, at its finest rung, what four children would be: their corners are there */
     if (has_children && (locked_step == 0 || half < locked_step)) geometry.locked_step = half;
     enum scree_status status = tile_from_level(memory, &geometry, step, plan->nodata_height_m, &walk->tile, error);
-    if (status == SCREE_OK) status = take_to(plan, walk, walk->rung, error);
+    bool is_whole = plan->ladder->lossless && walk->rung == plan->ladder->finest_rung;
+    if (status == SCREE_OK && !is_whole) status = take_to(plan, walk, walk->rung, error);
     if (status == SCREE_OK) status = tile_lock(&walk->tile, locked_step, error);
     if (status == SCREE_OK) status = start_recording(plan, walk, record, tile_max_error_m(&walk->tile), error);
     if (status == SCREE_OK) status = walk_to(plan, walk, RUNGS_A_ZOOM * id.zoom, error);
