@@ -151,7 +151,6 @@ static int64_t cell_of(const struct samples *samples, int32_t x, int32_t y) {
 }
 
 struct centres {
-    const struct samples *samples;
     const uint32_t *counts; /* points in each cell */
     struct sample *heights; /* of each cell's centre */
     struct places places;
@@ -183,8 +182,7 @@ static enum scree_status use_samples(struct tile *tile, const struct tin_piece *
     if (counts == NULL || centre == NULL || tile->cell_first == NULL || tile->extremes == NULL) goto cleanup;
     for (uint32_t p = 0; p < piece->mesh.point_count; p++)
         counts[cell_of(&tile->samples, piece->posts[p].x, piece->posts[p].y)]++;
-    struct centres centres = {.samples = &tile->samples,
-                              .counts = counts,
+    struct centres centres = {.counts = counts,
                               .heights = centre,
                               .places = {geometry->cell_span / 2, geometry->cell_span, tile->samples.columns,
                                          tile->samples.rows, geometry->columns, geometry->rows}};
