@@ -127,8 +127,22 @@ static void gather_extremes(const struct border_line *line, int32_t offset, int3
     }
 }
 
+/* All samples of two lines; the joint is the last of the first one and the first of the second. False: too many. */
+static bool join_samples(const struct border_line *const lines[2], const int32_t offsets[2], struct border_line *line) {
+    int32_t count = lines[0]->sample_count + (lines[1] != NULL ? lines[1]->sample_count : 0);
+    if (count > BORDER_MAX_SAMPLES) return false;
+    for (int i = 0; i < 2 && lines[i] != NULL; i++)
+        for (int32_t s = 0; s < lines[i]->sample_count; s++) {
+            struct border_sample sample = {lines[i]->samples[s].position + offsets[i], lines[i]->samples[s].height_m};
+            bool is_joint =
+                i == 1 && line->sample_count > 0 && line->samples[line->sample_count - 1].position == sample.position;
+            if (!is_joint) line->samples[line->sample_count++] = sample;
+        }
+    return true;
+}
+
 bool border_join(const struct border_line *first, const struct border_line *second, int32_t joint, int32_t cell_span,
-                 struct border_line *line) {
+                 bool keeps_samples, struct border_line *line) {
     struct border_sample lowest[BORDER_MAX_SAMPLES / 2], highest[BORDER_MAX_SAMPLES / 2];
     const struct border_line *lines[2] = {first, second};
     int32_t offsets[2] = {0, joint}, end = 0;
@@ -143,6 +157,7 @@ bool border_join(const struct border_line *first, const struct border_line *seco
                 (struct border_sample){lines[i]->vertices[v].position + offsets[i], lines[i]->vertices[v].height_m};
         end = line->vertices[line->vertex_count - 1].position;
     }
+    if (keeps_samples && join_samples(lines, offsets, line)) return true;
     int32_t cells = (end + cell_span - 1) / cell_span;
     for (int32_t cell = 0; cell < cells; cell++) lowest[cell].position = highest[cell].position = -1;
     for (int i = 0; i < 2; i++)

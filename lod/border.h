@@ -55,9 +55,9 @@ int32_t border_before(const struct border_line *line, int32_t position);
 bool border_keeps(const struct border_line *line, int32_t position);
 
 /* Puts `second` behind `first`, whose last vertex is the first of `second`; samples keep the lowest and the highest
- * height of every cell of `cell_span` steps (closed cells). `first` ends at `joint` steps; `second` may be NULL. False
- * when there are more than BORDER_MAX_VERTICES vertices. */
+ * height of every cell of `cell_span` steps (closed cells), or with `keeps_samples` all, if there is room for them.
+ * `first` ends at `joint` steps; `second` may be NULL. False when there are more than BORDER_MAX_VERTICES vertices. */
 bool border_join(const struct border_line *first, const struct border_line *second, int32_t joint, int32_t cell_span,
-                 struct border_line *line);
+                 bool keeps_samples, struct border_line *line);
 
 #endif

@@ -97,7 +97,7 @@ enum scree_status post_tile_from_children(struct scree_memory *memory, const str
         slope_grid_place(&children[i]->slopes, column, row, &tile->slopes);
     }
     if (status == SCREE_OK)
-        status = tile_lines_join(lines, child_span, span, geometry->side_drop_m, tile->lines, error);
+        status = tile_lines_join(lines, child_span, span, false, geometry->side_drop_m, tile->lines, error);
     if (status != SCREE_OK) post_tile_release(tile);
     return status;
 }

@@ -6,6 +6,7 @@
 #include "lod/quadric.h"
 #include "lod/tile_lines.h"
 #include "lod/tile_parts.h"
+#include "lod/tile_samples.h"
 
 #include <math.h>
 #include <string.h>
@@ -114,9 +115,11 @@ enum scree_status tile_begin_rest(struct tile *tile, struct scree_error *error) 
     rest->cell_span = (geometry->keeps_cells ? 1 : 2) * geometry->cell_span;
     rest->cell_columns = extremes_cells(geometry->columns, rest->cell_span);
     rest->cell_rows = extremes_cells(geometry->rows, rest->cell_span);
-    rest->extremes = scree_allocate(tile->memory, 2 * (size_t)rest->cell_columns * (size_t)rest->cell_rows,
-                                    sizeof *rest->extremes, "a tile's extremes", error);
-    if (rest->extremes == NULL) return SCREE_E_MEMORY;
+    bool leaves_pairs = tile->cell_first == NULL || !geometry->keeps_cells;
+    if (leaves_pairs)
+        rest->extremes = scree_allocate(tile->memory, 2 * (size_t)rest->cell_columns * (size_t)rest->cell_rows,
+                                        sizeof *rest->extremes, "a tile's extremes", error);
+    if (leaves_pairs && rest->extremes == NULL) return SCREE_E_MEMORY;
     int32_t across = geometry->keeps_cells ? 1 : 2;
     return slope_grid_allocate(tile->memory, (tile->slopes.columns - 1) / across + 1,
                                (tile->slopes.rows - 1) / across + 1, rest->cell_span, &rest->slopes, error);
@@ -173,15 +176,32 @@ failed:
 
 /* ---- a tile of extremes ---- */
 
-static enum scree_status use_extremes(struct tile *tile, struct scree_error *error) {
-    const struct tile_geometry *geometry = &tile->geometry;
+static enum scree_status use_extremes(struct tile *tile, const struct coarse_tile *const children[4],
+                                      int32_t child_span, struct scree_error *error) {
     tile->samples = tile_own_samples(tile);
     tile->extremes = scree_allocate(tile->memory, 2 * (size_t)tile->samples.columns * (size_t)tile->samples.rows,
                                     sizeof *tile->extremes, "extremes", error);
     if (tile->extremes == NULL) return SCREE_E_MEMORY;
     tile->samples.extremes = tile->extremes;
-    return slope_grid_allocate(tile->memory, geometry->columns / geometry->cell_span + 1,
-                               geometry->rows / geometry->cell_span + 1, geometry->cell_span, &tile->slopes, error);
+    for (int i = 0; i < 4; i++) {
+        if (children[i] == NULL) continue;
+        int32_t x = i % 2 * child_span, y = i / 2 * child_span, span = tile->geometry.cell_span;
+        extremes_place(children[i]->extremes, children[i]->cell_columns, children[i]->cell_rows, x / span, y / span, x,
+                       y, tile->extremes, tile->samples.columns);
+    }
+    return SCREE_OK;
+}
+
+static enum scree_status use_slopes(struct tile *tile, const struct coarse_tile *const children[4], int32_t child_span,
+                                    struct scree_error *error) {
+    const struct tile_geometry *geometry = &tile->geometry;
+    int32_t span = geometry->cell_span;
+    enum scree_status status = slope_grid_allocate(tile->memory, geometry->columns / span + 1,
+                                                   geometry->rows / span + 1, span, &tile->slopes, error);
+    for (int i = 0; i < 4 && status == SCREE_OK; i++)
+        if (children[i] != NULL)
+            slope_grid_place(&children[i]->slopes, i % 2 * child_span / span, i / 2 * child_span / span, &tile->slopes);
+    return status;
 }
 
 void tile_hand_up_slopes(struct tile *tile) {
@@ -195,10 +215,12 @@ void tile_hand_up_slopes(struct tile *tile) {
 static enum scree_status finish_extremes(struct tile *tile, struct scree_error *error) {
     enum scree_status status = tile_begin_rest(tile, error);
     if (status != SCREE_OK) return status;
-    if (tile->geometry.keeps_cells)
+    if (tile->cell_first != NULL && !tile->geometry.keeps_cells)
+        tile_samples_leave_pairs(tile);
+    else if (tile->cell_first == NULL && tile->geometry.keeps_cells)
         memcpy(tile->rest->extremes, tile->extremes,
                2 * (size_t)tile->samples.columns * (size_t)tile->samples.rows * sizeof *tile->extremes);
-    else
+    else if (tile->cell_first == NULL)
         extremes_reduce(tile->extremes, tile->samples.columns, tile->samples.rows, tile->rest->extremes);
     tile_hand_up_slopes(tile);
     return SCREE_OK;
@@ -219,7 +241,8 @@ static enum scree_status join_lines(struct tile *tile, const struct coarse_tile 
                                     struct scree_error *error) {
     const struct border_line *lines[4];
     for (int i = 0; i < 4; i++) lines[i] = children[i] != NULL ? children[i]->lines : NULL;
-    return tile_lines_join(lines, child_span, tile->geometry.cell_span, tile->geometry.side_drop_m, tile->lines, error);
+    return tile_lines_join(lines, child_span, tile->geometry.cell_span, tile->cell_first != NULL,
+                           tile->geometry.side_drop_m, tile->lines, error);
 }
 
 int32_t tile_child_span(const struct coarse_tile *const children[4]) {
@@ -238,14 +261,10 @@ enum scree_status tile_from_children(struct scree_memory *memory, const struct t
     for (int i = 0; i < 4; i++) meshes[i] = children[i] != NULL ? &children[i]->mesh : NULL;
     if ((status = mesh_merge(memory, meshes, child_span, &tile->mesh, error)) != SCREE_OK) goto failed;
     if ((status = border_is_closed(tile, error)) != SCREE_OK) goto failed;
-    if ((status = use_extremes(tile, error)) != SCREE_OK) goto failed;
-    for (int i = 0; i < 4; i++) {
-        if (children[i] == NULL) continue;
-        int32_t x = i % 2 * child_span, y = i / 2 * child_span, span = geometry->cell_span;
-        extremes_place(children[i]->extremes, children[i]->cell_columns, children[i]->cell_rows, x / span, y / span, x,
-                       y, tile->extremes, tile->samples.columns);
-        slope_grid_place(&children[i]->slopes, x / span, y / span, &tile->slopes);
-    }
+    status = tile_samples_are_whole(children) ? tile_samples_join(tile, children, child_span, error)
+                                              : use_extremes(tile, children, child_span, error);
+    if (status != SCREE_OK) goto failed;
+    if ((status = use_slopes(tile, children, child_span, error)) != SCREE_OK) goto failed;
     if ((status = join_lines(tile, children, child_span, error)) != SCREE_OK) goto failed;
     tile_place_vertices(tile);
     if ((status = finish_extremes(tile, error)) != SCREE_OK) goto failed;
@@ -412,6 +431,7 @@ enum scree_status tile_hand_up_new(struct tile *tile, struct coarse_tile **coars
     if (status != SCREE_OK) return status;
     memcpy(tile->rest->lines, tile->lines, sizeof tile->lines);
     tile->rest->max_error_m = tile_max_error_m(tile);
+    if (tile->cell_first != NULL && tile->geometry.keeps_cells) tile_samples_hand_up(tile);
     *coarse = tile->rest;
     tile->rest = NULL;
     return SCREE_OK;
@@ -439,5 +459,6 @@ void coarse_tile_free(struct scree_memory *memory, struct coarse_tile *coarse) {
     scree_release(memory, coarse->fitted.mesh.vertices);
     slope_grid_release(memory, &coarse->slopes);
     scree_release(memory, coarse->extremes);
+    scree_release(memory, coarse->cell_first);
     scree_release(memory, coarse);
 }

@@ -55,6 +55,7 @@ struct coarse_tile {
     int32_t cell_span;     /* of the parent's cells */
     int32_t cell_columns, cell_rows;
     struct sample *extremes;  /* 2 a cell: lowest, highest; heights in metres */
+    uint32_t *cell_first;     /* not NULL: `extremes` are all samples, any number a cell, as of struct samples */
     struct slope_grid slopes; /* at the corners of the parent's cells */
     struct scree_mesh mesh;
     struct border_line lines[SIDE_COUNT];

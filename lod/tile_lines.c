@@ -15,8 +15,8 @@ void tile_line_start(struct border_line *line, int32_t length, int32_t step, dou
 }
 
 enum scree_status tile_lines_join(const struct border_line *const children[4], int32_t child_span, int32_t cell_span,
-                                  const double side_drop_m[SIDE_COUNT], struct border_line lines[SIDE_COUNT],
-                                  struct scree_error *error) {
+                                  bool keeps_samples, const double side_drop_m[SIDE_COUNT],
+                                  struct border_line lines[SIDE_COUNT], struct scree_error *error) {
     static const struct {
         enum tile_side side;
         int first, second;           /* children along the line */
@@ -28,7 +28,8 @@ enum scree_status tile_lines_join(const struct border_line *const children[4], i
         const struct border_line *first = children[outer ? joins[i].first : joins[i].first_else];
         const struct border_line *second = children[outer ? joins[i].second : joins[i].second_else];
         enum tile_side side = joins[i].side;
-        if (!border_join(&first[side], second != NULL ? &second[side] : NULL, child_span, cell_span, &lines[side]))
+        if (!border_join(&first[side], second != NULL ? &second[side] : NULL, child_span, cell_span, keeps_samples,
+                         &lines[side]))
             return scree_fail(error, SCREE_E_LIMIT,
                               "the tolerance is too small for so coarse a zoom: a tile's border keeps more than %d "
                               "vertices; raise --error or --error-at, or start at a higher --min-zoom",

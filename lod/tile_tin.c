@@ -1,5 +1,6 @@
 /* A tile out of a TIN: its piece of the TIN as mesh, border lines, samples and slopes. */
 #include "lod/tile_parts.h"
+#include "lod/tile_samples.h"
 
 #include <math.h>
 
@@ -209,25 +210,6 @@ cleanup:
     return status;
 }
 
-/* The lowest and the highest sample of the parent's cells. */
-static void hand_up_extremes(struct tile *tile) {
-    struct coarse_tile *rest = tile->rest;
-    int32_t across = tile->geometry.keeps_cells ? 1 : 2;
-    for (int32_t cell = 0; cell < rest->cell_columns * rest->cell_rows; cell++) {
-        struct sample *pair = &rest->extremes[2 * (int64_t)cell];
-        int32_t column = cell % rest->cell_columns * across, row = cell / rest->cell_columns * across;
-        bool is_first = true;
-        for (int32_t y = row; y < row + across && y < tile->samples.rows; y++)
-            for (int32_t x = column; x < column + across && x < tile->samples.columns; x++) {
-                int64_t own = (int64_t)y * tile->samples.columns + x;
-                for (uint32_t i = tile->cell_first[own]; i < tile->cell_first[own + 1]; i++, is_first = false) {
-                    if (is_first || tile->extremes[i].height_m < pair[0].height_m) pair[0] = tile->extremes[i];
-                    if (is_first || tile->extremes[i].height_m > pair[1].height_m) pair[1] = tile->extremes[i];
-                }
-            }
-    }
-}
-
 /* ---- slopes ---- */
 
 static void take_slope(void *context, int64_t index, const struct facet *facet, const double weights[3]) {
@@ -284,7 +266,7 @@ enum scree_status tile_from_tin(struct scree_memory *memory, const struct tile_g
     if ((status = use_samples(tile, piece, error)) != SCREE_OK) goto failed;
     if ((status = use_slopes(tile, piece, error)) != SCREE_OK) goto failed;
     if ((status = tile_begin_rest(tile, error)) != SCREE_OK) goto failed;
-    hand_up_extremes(tile);
+    if (!geometry->keeps_cells) tile_samples_leave_pairs(tile);
     tile_hand_up_slopes(tile);
     mesh_measure(&tile->mesh, &tile->samples);
     if ((status = tile_begin_simplifier(tile, error)) != SCREE_OK) goto failed;

@@ -209,7 +209,7 @@ static void joined_lines_keep_vertices_and_extremes(void) {
             of->samples[i] = of->vertices[i] = (struct border_sample){i, heights_m[half * LENGTH + i]};
         border_reduce(of, 10, 0);
     }
-    CU_ASSERT_TRUE(border_join(&other, second, LENGTH, 2, &line));
+    CU_ASSERT_TRUE(border_join(&other, second, LENGTH, 2, false, &line));
     CU_ASSERT_EQUAL(line.vertex_count, other.vertex_count + second->vertex_count - 1);
     CU_ASSERT_EQUAL(line.curvature_m, 0.25);
     for (int32_t i = 0; i <= 2 * LENGTH; i++)
@@ -217,7 +217,7 @@ static void joined_lines_keep_vertices_and_extremes(void) {
                         i <= LENGTH ? border_keeps(&other, i) : border_keeps(second, i - LENGTH));
     check_extremes(&line, heights_m, 2 * LENGTH, 2);
     other = line;
-    CU_ASSERT_TRUE(border_join(&other, NULL, 2 * LENGTH, 4, &line)); /* the window ends before a second one */
+    CU_ASSERT_TRUE(border_join(&other, NULL, 2 * LENGTH, 4, false, &line)); /* the window ends before a second one */
     CU_ASSERT_TRUE(same_vertices(&line, &other));
     check_extremes(&line, heights_m, 2 * LENGTH, 4);
     free(second);
@@ -228,7 +228,7 @@ static void cut_lines_have_a_short_last_cell(void) {
     float heights_m[6] = {4, 1, 3, 9, 2, 7};
     line.vertex_count = line.sample_count = 6;
     for (int32_t i = 0; i < 6; i++) line.samples[i] = line.vertices[i] = (struct border_sample){i, heights_m[i]};
-    CU_ASSERT_TRUE(border_join(&line, NULL, 5, 2, &other));
+    CU_ASSERT_TRUE(border_join(&line, NULL, 5, 2, false, &other));
     check_extremes(&other, heights_m, 5, 2);
 }
 
@@ -240,7 +240,7 @@ static void too_many_vertices_are_refused(void) {
         other.vertex_count = 2049 + extra;
         line.sample_count = other.sample_count = 0;
         for (int32_t v = 0; v < 2050; v++) line.vertices[v].position = other.vertices[v].position = v;
-        CU_ASSERT_EQUAL(border_join(&line, &other, 2048, 1 << 12, joined), extra == 0);
+        CU_ASSERT_EQUAL(border_join(&line, &other, 2048, 1 << 12, false, joined), extra == 0);
     }
     free(joined);
 }

@@ -260,6 +260,57 @@ static void tiles_go_down_the_rungs(void) {
     island_free(island);
 }
 
+/* ---- up the zooms ---- */
+
+static bool has_sample(const struct samples *samples, int32_t x, int32_t y, float height_m) {
+    int64_t cell = (int64_t)(y / samples->cell_span) * samples->columns + x / samples->cell_span;
+    for (uint32_t i = samples->cell_first[cell]; i < samples->cell_first[cell + 1]; i++)
+        if (samples->extremes[i].x == x && samples->extremes[i].y == y && samples->extremes[i].height_m == height_m)
+            return true;
+    return false;
+}
+
+/* The parent of four tiles is measured at each of their points, and what it leaves depends on how many cells there are
+ * above it. */
+static void parents_are_measured_at_all_points(void) {
+    const int32_t span = 1 << 12;
+    struct island *island = island_new(2500, span, 0.1);
+    struct tile_geometry geometry = geometry_of(span), above = geometry_of(2 * span);
+    struct coarse_tile *children[4], *handed;
+    struct tile *tile = calloc(1, sizeof *tile);
+    CU_ASSERT_PTR_NOT_NULL_FATAL(tile);
+    geometry.keeps_cells = true;
+    above.cell_span = geometry.cell_span;
+    for (int i = 0; i < 4; i++) {
+        const struct tin_piece *piece = &island->pieces[i / 2][i % 2];
+        CU_ASSERT_EQUAL_FATAL(tile_from_tin(&island->memory, &geometry, piece, tile, NULL), SCREE_OK);
+        tile_set_codes(tile, (struct code_frame){span, 0, 0});
+        CU_ASSERT_EQUAL_FATAL(tile_advance(tile, 2, NULL), SCREE_OK);
+        CU_ASSERT_EQUAL_FATAL(tile_hand_up_new(tile, &children[i], NULL), SCREE_OK);
+        tile_release(tile);
+    }
+    const struct coarse_tile *const views[4] = {children[0], children[1], children[2], children[3]};
+    CU_ASSERT_EQUAL_FATAL(tile_from_children(&island->memory, &above, views, tile, NULL), SCREE_OK);
+    CU_ASSERT_PTR_NOT_NULL_FATAL(tile->samples.cell_first);
+    for (uint32_t p = 0; p < island->lattice.point_count; p++) {
+        const struct tin_post *post = &island->lattice.points[p];
+        bool is_inside = post->x < 2 * span && post->y < 2 * span && post->x % span != 0 && post->y % span != 0;
+        CU_ASSERT(!is_inside || has_sample(&tile->samples, post->x, post->y, post->height_m));
+    }
+    CU_ASSERT(tile_max_error_m(tile) <= 2.5);
+    tile_set_codes(tile, (struct code_frame){2 * span, 0, 0});
+    CU_ASSERT_EQUAL_FATAL(tile_advance(tile, 4, NULL), SCREE_OK);
+    CU_ASSERT_EQUAL_FATAL(tile_hand_up_new(tile, &handed, NULL), SCREE_OK);
+    CU_ASSERT_PTR_NULL(handed->cell_first);
+    for (int32_t i = 0; i < handed->cell_columns * handed->cell_rows; i++)
+        CU_ASSERT(handed->extremes[2 * i].height_m <= handed->extremes[2 * i + 1].height_m);
+    tile_release(tile);
+    free(tile);
+    coarse_tile_free(&island->memory, handed);
+    for (int i = 0; i < 4; i++) coarse_tile_free(&island->memory, children[i]);
+    island_free(island);
+}
+
 int suite_tin_tiles(void) {
     CU_pSuite suite = CU_add_suite("tiles of TINs", NULL, NULL);
     if (suite == NULL) return 1;
@@ -267,5 +318,6 @@ int suite_tin_tiles(void) {
     CU_ADD_TEST(suite, any_rounding_gives_a_surface);
     CU_ADD_TEST(suite, walls_are_steep);
     CU_ADD_TEST(suite, tiles_go_down_the_rungs);
+    CU_ADD_TEST(suite, parents_are_measured_at_all_points);
     return 0;
 }
