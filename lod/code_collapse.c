@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+#define HIGHEST_M 1e5f /* no step on Earth is higher */
+
 static bool positive_in_codes(const struct simplifier *simplifier, const struct mesh_triangle *triangle) {
     const struct mesh_vertex *vertices = simplifier->mesh->vertices;
     return codes_positive(&simplifier->options.codes, &vertices[triangle->vertex[0]].at,
@@ -24,7 +26,19 @@ static bool collapse_corner(struct simplifier *simplifier, const struct mesh_tri
     return false;
 }
 
-/* The same without a look at the codes of the triangles that it makes: they come next. */
+/* Beside a wall the first collapse that can be done may take its foot away, and the next one a vertex that nobody
+ * misses: bounds grow from the rung's own on until there is one. */
+static bool collapse_gently(struct simplifier *simplifier, const struct mesh_triangle *triangle, float tolerance_m) {
+    bool done = false;
+    for (float bound_m = tolerance_m; bound_m > 0 && bound_m < HIGHEST_M && !done; bound_m *= 2) {
+        simplifier->tolerance_m = bound_m;
+        done = collapse_corner(simplifier, triangle, false);
+    }
+    simplifier->tolerance_m = INFINITY;
+    return done || collapse_corner(simplifier, triangle, false);
+}
+
+/* Any collapse, without a look at the codes of the triangles that it makes: they come next. */
 static bool collapse_corner_anyhow(struct simplifier *simplifier, const struct mesh_triangle *triangle) {
     int64_t span = simplifier->options.codes.span;
     simplifier->options.codes.span = 0;
@@ -45,7 +59,7 @@ int32_t code_collapse(struct simplifier *simplifier) {
             const struct mesh_triangle *triangle = &simplifier->mesh->triangles[t];
             if (triangle->vertex[0] == MESH_NONE || positive_in_codes(simplifier, triangle)) continue;
             bad++;
-            if (collapse_corner(simplifier, triangle, false)) continue;
+            if (collapse_gently(simplifier, triangle, tolerance_m)) continue;
             if (!anyhow || !collapse_corner_anyhow(simplifier, triangle)) stuck++;
         }
         if (anyhow && stuck == bad) break;
