@@ -3,32 +3,9 @@
 #include "src/cloud_arguments.h"
 #include "src/filter_arguments.h"
 
-#include <errno.h>
 #include <limits.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-bool argument_number(const char *text, double *number) {
-    char *end;
-    *number = strtod(text, &end);
-    return end != text && *end == '\0' && isfinite(*number);
-}
-
-bool argument_integer(const char *text, long low, long high, int *number) {
-    char *end;
-    errno = 0;
-    long value = strtol(text, &end, 10);
-    if (end == text || *end != '\0' || errno != 0 || value < low || value > high) return false;
-    *number = (int)value;
-    return true;
-}
-
-bool argument_is(const char *argument, const char *name) {
-    if (argument[0] != '-') return false;
-    argument += argument[1] == '-' ? 2 : 1;
-    return strcmp(argument, name) == 0;
-}
 
 static enum argument_result wrong(struct scree_error *error, const char *option, const char *wanted) {
     scree_fail(error, SCREE_E_ARGUMENT, "%s wants %s", option, wanted);
