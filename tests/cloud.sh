@@ -1,16 +1,8 @@
 #!/bin/sh
 # Point clouds: LAS and text become terrain that keeps its promises, on any number of threads; bad ones are refused.
 set -u
-scree=$TOP_BUILDDIR/scree
-data=${SCREE_TEST_DATA:-$TOP_SRCDIR/../shared/data}
-folder=$(mktemp -d) || exit 99
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 99
-failed=0
-fail() {
-    echo "$*"
-    failed=1
-}
+# shellcheck source=tests/builds.sh
+. "$TOP_SRCDIR/tests/builds.sh"
 
 "$TOP_BUILDDIR/tests/fractal_las" -o trees.las --points 40000 --spacing-m 3 || exit 99
 "$scree" build trees.las --class 2 --grid 4 -o out -q -j 1 || fail 'no build'
@@ -31,14 +23,6 @@ awk 'BEGIN { print "x,y,z"; for (i = 0; i < 3600; i++) print i % 60 * 3, int(i /
 "$scree" build plane.csv --s_srs EPSG:32611 --grid 3 --profile local -o plane -q || fail 'no build of text'
 "$scree" verify plane --against plane.csv --s_srs EPSG:32611 --grid 3 >printed || fail "text: $(grep BROKEN printed)"
 
-# refuses CODE WORD ARGUMENT...: one line that has the word, and nothing is written.
-refuses() {
-    code=$1 word=$2
-    shift 2
-    "$scree" build "$@" -o refused >printed 2>&1
-    [ $? -eq "$code" ] && grep -q -e "$word" printed && [ "$(wc -l <printed)" -eq 1 ] && [ ! -e refused ] ||
-        fail "$*: $(cat printed)"
-}
 refuses 2 '--grid wants' trees.las --grid 0
 refuses 2 '--class wants' trees.las --class 2,,9
 refuses 2 '--returns wants' trees.las --returns second
@@ -53,17 +37,16 @@ refuses 1 'laszip -i' trees.laz
 { cat plane.csv && echo 5,6; } >ragged.csv
 refuses 1 'line 3602' ragged.csv --s_srs EPSG:32611 --grid 3
 
-# The page's commands, as they are written there; what is made already and other people's programs apart.
-mkdir page && cd page && ln -s "$TOP_BUILDDIR" build || exit 99
-sed -n 's/^    \(build\/.*\)/\1/p' "$TOP_SRCDIR/docs/clouds.md" >commands
-[ "$(grep -c 'scree build' commands)" -ge 3 ] || fail 'docs/clouds.md has fewer commands than it had'
-sh -e commands >printed 2>&1 || fail "docs/clouds.md: $(tail -n 3 printed)"
-cd ..
+page clouds.md 3
 
 if [ -r "$data/quebec_topography_ground_water.las" ]; then
     cloud=$data/quebec_topography_ground_water.las
     "$scree" build "$cloud" --class 2,9 --grid 2 -o real -q || fail 'no build of a real cloud'
     "$scree" verify real --against "$cloud" --class 2,9 --grid 2 >printed || fail "real: $(grep BROKEN printed)"
+    for profile in local geodetic; do
+        "$scree" build "$cloud" --class 2,9 --block 2000 --profile $profile -o kept -q || fail "no triangles: $profile"
+        "$scree" verify kept --against "$cloud" --class 2,9 >printed || fail "$profile: $(grep BROKEN printed)"
+    done
 else
     echo "skipped: no real cloud in $data (SCREE_TEST_DATA names the folder)"
 fi

@@ -1,15 +1,8 @@
 #!/bin/sh
 # build --fit: static tiles are fitted and keep their promises, on any number of threads; streams do not change.
 set -u
-scree=$TOP_BUILDDIR/scree
-folder=$(mktemp -d) || exit 99
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 99
-failed=0
-fail() {
-    echo "$*"
-    failed=1
-}
+# shellcheck source=tests/builds.sh
+. "$TOP_SRCDIR/tests/builds.sh"
 
 # triangles OUT: of all its static tiles.
 triangles() {

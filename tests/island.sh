@@ -3,14 +3,8 @@
 # of their own and without pictures: what the page claims holds, and the text and the LAS file of the points are one
 # cloud.
 set -u
-folder=$(mktemp -d) || exit 99
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 99
-failed=0
-fail() {
-    echo "$*"
-    failed=1
-}
+# shellcheck source=tests/builds.sh
+. "$TOP_SRCDIR/tests/builds.sh"
 
 SCREE_BUILD=$TOP_BUILDDIR ISLAND_LEVELS=4 ISLAND_PICTURES=no \
     sh "$TOP_SRCDIR/samples/island_experiment.sh" "$folder/made" >printed 2>&1 || fail "$(tail -n 12 printed)"

@@ -1,15 +1,8 @@
 #!/bin/sh
 # TINs: mesh files of all formats become the same terrain, on any number of threads, and what is none is refused.
 set -u
-scree=$TOP_BUILDDIR/scree
-folder=$(mktemp -d) || exit 99
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 99
-failed=0
-fail() {
-    echo "$*"
-    failed=1
-}
+# shellcheck source=tests/builds.sh
+. "$TOP_SRCDIR/tests/builds.sh"
 
 # A hill of 40 x 40 points, in centimetres, with a hole and a corner off.
 awk 'BEGIN {
@@ -81,14 +74,6 @@ for base in 20% 600 1.2m; do
         exit !fine }' || fail "--base $base: $(coarsest_of) of $whole"
 done
 
-# refuses CODE WORD ARGUMENT...: one line that has the word, and nothing is written.
-refuses() {
-    code=$1 word=$2
-    shift 2
-    "$scree" build "$@" -o refused >printed 2>&1
-    [ $? -eq "$code" ] && grep -q -e "$word" printed && [ "$(wc -l <printed)" -eq 1 ] && [ ! -e refused ] ||
-        fail "$*: $(cat printed)"
-}
 triangles() {
     printf 'OFF\n%d %d 0\n' "$(echo "$1" | tr ';' '\n' | wc -l)" "$(echo "$2" | tr ';' '\n' | wc -l)"
     echo "$1;$2" | tr ';' '\n'
@@ -116,9 +101,5 @@ head -c 30000 hill.ply >short.ply
 refuses 1 'short.ply' short.ply --profile local
 build cliff.off --grid 1 --profile local -o cliff || fail '--grid takes no cliff'
 
-# The page's commands, as they are written there.
-mkdir page && cd page && ln -s "$TOP_BUILDDIR" build || exit 99
-sed -n 's/^    \(build\/.*\)/\1/p' "$TOP_SRCDIR/docs/tins.md" >commands
-[ "$(grep -c 'scree build' commands)" -ge 6 ] || fail 'docs/tins.md has fewer commands than it had'
-sh -e commands >printed 2>&1 || fail "docs/tins.md: $(tail -n 3 printed)"
+page tins.md 6
 exit $failed
