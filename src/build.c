@@ -58,7 +58,6 @@ static enum scree_status check_tin(const struct build_options *options, struct s
     const char *what = options->method != NULL                 ? "--method wants"
                        : options->fits                         ? "--fit wants"
                        : options->max_zoom != ZOOM_FROM_SOURCE ? "--max-zoom is for"
-                       : options->raster.resampling != NULL    ? "-r is for"
                                                                : NULL;
     if (what == NULL) return SCREE_OK;
     return scree_fail(error, SCREE_E_ARGUMENT, "%s: is kept as triangles, and %s posts; --grid M makes posts of it",
@@ -221,6 +220,18 @@ static enum scree_status finish_streams(const struct build_options *options, str
     return status;
 }
 
+/* A build in two passes, as whoever watches it sees it. */
+struct passes {
+    const struct pyramid_options *watch;
+    uint32_t done; /* passes */
+};
+
+static void tell_pass(void *context, uint32_t tiles_done, uint32_t tiles_in_all) {
+    const struct passes *passes = context;
+    uint32_t both = (passes->done * tiles_in_all + tiles_done) / 2;
+    if (passes->watch->progress != NULL) passes->watch->progress(passes->watch->progress_context, both, tiles_in_all);
+}
+
 /* What a TIN's streams end with is known when all of their meshes have been made once. */
 static enum scree_status find_base(const struct build_options *options, const struct pyramid_options *pyramid,
                                    struct build *build, struct scree_error *error) {
@@ -264,7 +275,13 @@ enum scree_status build_run(const struct build_options *options, const struct py
     pyramid.terrain = terrain;
     pyramid.stream = stream;
     build->stream_min_zoom = options->min_zoom;
-    if (build->is_tin && stream != NULL) status = find_base(options, &pyramid, build, error);
+    struct passes passes = {watch, 0};
+    if (build->is_tin && stream != NULL) {
+        pyramid.progress = tell_pass;
+        pyramid.progress_context = &passes;
+        status = find_base(options, &pyramid, build, error);
+        passes.done = 1;
+    }
     if (status != SCREE_OK) goto cleanup;
     pyramid.has_base = build->has_base;
     pyramid.base_rung = build->base_rung;
