@@ -4,8 +4,6 @@
 
 #define CLEARANCE 0.5 /* walls: how near a foot may come to an edge */
 #define LONGEST   4   /* walls: from foot to foot along an edge of the outline */
-#define WIDEST    2   /* walls: where one is wider, it gets one more foot */
-#define PASSES    16  /* at most, to do so */
 #define SHARPEST  0.5 /* cosine: at sharper corners the wall's foot is no farther away than at this one */
 
 void tin_piece_release(struct scree_memory *memory, struct tin_piece *piece) {
@@ -200,50 +198,6 @@ static enum scree_status put_level(const struct tin_patch *patch, const struct t
     return status;
 }
 
-static bool is_ground(const struct tin_tile *tile, const struct tin_post *post) {
-    return post->height_m == tile->outside_m && post->slope.east == 0 && post->slope.north == 0;
-}
-
-/* Of a triangle between the surface and the ground: the place where a foot is missing, one wall away from the surface
- * on the way to the ground; false when it is no wider than a wall may be. */
-static bool foot_between(const struct tin_tile *tile, const struct tin_post *const corners[3], struct tin_post *foot) {
-    int ground_count = 0, odd = 0; /* the corner that is alone on its level */
-    for (int k = 0; k < 3; k++) ground_count += is_ground(tile, corners[k]);
-    if (ground_count == 0 || ground_count == 3) return false;
-    while (is_ground(tile, corners[odd]) != (ground_count == 1)) odd++;
-    const struct tin_post *a = corners[odd], *b = corners[(odd + 1) % 3], *c = corners[(odd + 2) % 3];
-    double bx = (double)b->x - a->x, by = (double)b->y - a->y, cx = (double)c->x - a->x, cy = (double)c->y - a->y;
-    double base = hypot(cx - bx, cy - by), width = (bx * cy - by * cx) / base;
-    if (width <= WIDEST * (double)tile->wall_steps) return false;
-    /* from the surface, which is the odd corner or the side opposite it, to the middle of the ground */
-    double middle_x = (bx + cx) / 2, middle_y = (by + cy) / 2, length = hypot(middle_x, middle_y);
-    double share = tile->wall_steps / length;
-    if (ground_count == 1) share = 1 - share;
-    *foot =
-        (struct tin_post){.x = a->x + (int32_t)lrint(share * middle_x), .y = a->y + (int32_t)lrint(share * middle_y)};
-    return true;
-}
-
-/* Feet where the outline is too ragged for one at each of its points. */
-static enum scree_status put_more_feet(const struct tin_patch *patch, const struct tin_tile *tile,
-                                       struct tin_piece *piece, struct scree_error *error) {
-    enum scree_status status = SCREE_OK;
-    uint32_t before = 0;
-    for (int pass = 0; pass < PASSES && before != piece->mesh.point_count && status == SCREE_OK; pass++) {
-        before = piece->mesh.point_count;
-        for (uint32_t t = 0; t < piece->mesh.triangle_count && status == SCREE_OK; t++) {
-            const uint32_t *corner = piece->mesh.triangles[t].corner;
-            struct tin_post foot;
-            if (corner[0] == CONSTRAINED_NONE) continue;
-            const struct tin_post *const corners[3] = {&piece->posts[corner[0]], &piece->posts[corner[1]],
-                                                       &piece->posts[corner[2]]};
-            if (foot_between(tile, corners, &foot))
-                status = put_outside(patch, tile, foot, CLEARANCE * tile->wall_steps, piece, error);
-        }
-    }
-    return status;
-}
-
 enum scree_status tin_piece_make(struct scree_memory *memory, const struct tin_lattice *lattice,
                                  const struct tin_tile *tile, struct tin_piece *piece, struct scree_error *error) {
     struct tin_patch patch = {0};
@@ -260,7 +214,6 @@ enum scree_status tin_piece_make(struct scree_memory *memory, const struct tin_l
     if (status == SCREE_OK) status = fix_edges(&patch, tile, points, piece, error);
     if (status == SCREE_OK) status = put_feet(&patch, tile, piece, error);
     if (status == SCREE_OK) status = put_level(&patch, tile, piece, error);
-    if (status == SCREE_OK) status = put_more_feet(&patch, tile, piece, error);
 cleanup:
     scree_release(memory, points);
     tin_patch_release(&patch);

@@ -214,6 +214,42 @@ static void walls_are_steep(void) {
     island_free(island);
 }
 
+/* A tile's corner half a step beside the surface, where rounding may have put it, is on the surface for all four of its
+ * tiles: else the ground would rise from there to the next point far away. */
+static void corners_beside_the_surface_are_on_it(void) {
+    struct scree_memory memory = {0};
+    struct tin_lattice lattice = {.memory = &memory,
+                                  .point_count = 3,
+                                  .triangle_count = 1,
+                                  .tile_span = 1024,
+                                  .tiles_x = 2,
+                                  .tiles_y = 2,
+                                  .wall_steps = 16};
+    const struct tin_post places[3] = {{.x = 100, .y = 100, .height_m = 50},
+                                       {.x = 1948, .y = 100, .height_m = 50},
+                                       {.x = 1948, .y = 1947, .height_m = 50}};
+    lattice.points = scree_allocate(&memory, 3, sizeof *lattice.points, "points", NULL);
+    lattice.corners = scree_allocate(&memory, 3, sizeof *lattice.corners, "corners", NULL);
+    CU_ASSERT_TRUE_FATAL(lattice.points != NULL && lattice.corners != NULL);
+    for (uint32_t p = 0; p < 3; p++) {
+        lattice.points[p] = places[p];
+        lattice.corners[p] = p;
+    }
+    CU_ASSERT_EQUAL_FATAL(tin_lattice_finish(&lattice, unit_steps, NULL, NULL), SCREE_OK);
+    for (int32_t i = 0; i < 4; i++) {
+        struct tin_tile tile = {i % 2, i / 2, 1024, 1024, 256, 16, -50};
+        struct tin_piece piece;
+        CU_ASSERT_EQUAL_FATAL(tin_piece_make(&memory, &lattice, &tile, &piece, NULL), SCREE_OK);
+        covers_its_tile(&piece, 1024);
+        /* the corners of a mesh are numbered counter-clockwise from the south-western one */
+        const uint32_t common[4] = {2, 3, 1, 0};
+        CU_ASSERT_EQUAL(piece.posts[common[i]].height_m, 50);
+        tin_piece_release(&memory, &piece);
+    }
+    tin_lattice_release(&lattice);
+    CU_ASSERT_EQUAL(memory.used_bytes, 0);
+}
+
 /* ---- down the rungs ---- */
 
 static struct tile_geometry geometry_of(int32_t span) {
@@ -317,6 +353,7 @@ int suite_tin_tiles(void) {
     CU_ADD_TEST(suite, triangles_are_kept_and_borders_agree);
     CU_ADD_TEST(suite, any_rounding_gives_a_surface);
     CU_ADD_TEST(suite, walls_are_steep);
+    CU_ADD_TEST(suite, corners_beside_the_surface_are_on_it);
     CU_ADD_TEST(suite, tiles_go_down_the_rungs);
     CU_ADD_TEST(suite, parents_are_measured_at_all_points);
     return 0;
