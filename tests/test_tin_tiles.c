@@ -250,6 +250,36 @@ static void corners_beside_the_surface_are_on_it(void) {
     CU_ASSERT_EQUAL(memory.used_bytes, 0);
 }
 
+/* A point on a side keeps its height, though an edge crosses the side so near that rounding puts it there too. */
+static void points_on_sides_keep_their_heights(void) {
+    struct scree_memory memory = {0};
+    struct tin_lattice lattice = {.memory = &memory, .point_count = 4, .triangle_count = 2, .tile_span = 1024};
+    const struct tin_post places[4] = {
+        {.x = 0, .y = 0}, {.x = 1024, .y = 500, .height_m = 10}, {.x = 2048, .y = 1001}, {.x = 0, .y = 1001}};
+    const uint32_t corners[6] = {0, 2, 3, 0, 1, 2};
+    lattice.tiles_x = lattice.tiles_y = 2;
+    lattice.wall_steps = 16;
+    lattice.points = scree_allocate(&memory, 4, sizeof *lattice.points, "points", NULL);
+    lattice.corners = scree_allocate(&memory, 6, sizeof *lattice.corners, "corners", NULL);
+    CU_ASSERT_TRUE_FATAL(lattice.points != NULL && lattice.corners != NULL);
+    for (int i = 0; i < 4; i++) lattice.points[i] = places[i];
+    for (int i = 0; i < 6; i++) lattice.corners[i] = corners[i];
+    CU_ASSERT_EQUAL_FATAL(tin_lattice_finish(&lattice, unit_steps, NULL, NULL), SCREE_OK);
+    for (int32_t column = 0; column < 2; column++) {
+        struct tin_tile tile = {column, 0, 1024, 1024, 256, 16, -50};
+        struct tin_piece piece;
+        bool is_there = false;
+        CU_ASSERT_EQUAL_FATAL(tin_piece_make(&memory, &lattice, &tile, &piece, NULL), SCREE_OK);
+        const struct tin_side *side = &piece.sides[column == 0 ? SIDE_EAST : SIDE_WEST];
+        for (uint32_t i = 0; i < side->count; i++)
+            is_there = is_there || (side->posts[i].y == 500 && side->posts[i].height_m == 10);
+        CU_ASSERT(is_there);
+        tin_piece_release(&memory, &piece);
+    }
+    tin_lattice_release(&lattice);
+    CU_ASSERT_EQUAL(memory.used_bytes, 0);
+}
+
 /* ---- down the rungs ---- */
 
 static struct tile_geometry geometry_of(int32_t span) {
@@ -354,6 +384,7 @@ int suite_tin_tiles(void) {
     CU_ADD_TEST(suite, any_rounding_gives_a_surface);
     CU_ADD_TEST(suite, walls_are_steep);
     CU_ADD_TEST(suite, corners_beside_the_surface_are_on_it);
+    CU_ADD_TEST(suite, points_on_sides_keep_their_heights);
     CU_ADD_TEST(suite, tiles_go_down_the_rungs);
     CU_ADD_TEST(suite, parents_are_measured_at_all_points);
     return 0;
